@@ -1,0 +1,190 @@
+// The three certificates of absence on the whole interval: volume, area, length.
+//
+// A contact at a time s needs f(s) = 0 (coplanar), a contact in each coordinate projection, and an
+// overlap along each axis. Each is refuted by the strict sign of Bernstein coefficients beyond their
+// error bounds (the paper's dimension reduction, section 4.2, turned into sign tests). Any one proves
+// absence, whatever the degeneracy: flat triangles, points, parallel or no motion, the zero cubic.
+#pragma once
+
+#include <fastccd/options.hpp>
+
+#include <coplanarity.hpp>
+#include <error_bound.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Products of extents, floored against underflow (error_bound.hpp).
+template <class L>
+struct Scales {
+    L yz, zx, xy;  ///< For the projections along x, y and z.
+    L volume;
+};
+
+template <class L>
+FASTCCD_INLINE Scales<L> scales(const Extents<L>& e)
+{
+    const L floor = broadcast<L>(area_floor);
+    const L xy = e.x * e.y;
+    return {max(e.y * e.z, floor), max(e.z * e.x, floor), max(xy, floor),
+            max(xy * e.z, broadcast<L>(volume_floor))};
+}
+
+/// Components of r1, r2, r3 along one axis at one end of an interval.
+template <class L>
+struct AxisComponents {
+    L r1, r2, r3;
+};
+
+/// Signed gap between the two primitives along one axis, at one time. The pair is apart along the
+/// axis, in one and the same order over a whole interval, if `above` is positive at both ends or
+/// `below` negative at both ends (each is a difference of linear functions of time per pair of points).
+template <class L>
+struct AxisGap {
+    L above;    ///< Smallest coordinate of the second primitive minus the largest of the first.
+    L below;    ///< Largest coordinate of the second primitive minus the smallest of the first.
+    L largest;  ///< Largest and smallest component, for the extent.
+    L smallest;
+};
+
+template <PairKind kind, class L>
+FASTCCD_INLINE AxisGap<L> axis_gap(const AxisComponents<L>& c)
+{
+    if constexpr (kind == PairKind::vertex_face) {  // the origin against r1 r2 r3
+        const L low = min(c.r1, c.r2, c.r3);
+        const L high = max(c.r1, c.r2, c.r3);
+        return {low, high, high, low};
+    } else {  // 0 r1 against r2 r3
+        const L zero = broadcast<L>(0.0);
+        const L low_first = min(zero, c.r1), high_first = max(zero, c.r1);
+        const L low_second = min(c.r2, c.r3), high_second = max(c.r2, c.r3);
+        return {low_second - high_first, high_second - low_first, max(high_first, high_second),
+                min(low_first, low_second)};
+    }
+}
+
+template <class L>
+struct LinearCertificate {
+    LaneMask<L> apart;
+    L extent;
+};
+
+/// Strict separation along one axis over the whole interval.
+template <PairKind kind, class L>
+FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>& start, const AxisComponents<L>& end,
+                                                         const ErrorBounds& bounds)
+{
+    const AxisGap<L> s = axis_gap<kind>(start), e = axis_gap<kind>(end);
+    const L zero = broadcast<L>(0.0);
+    const L extent = max(max(s.largest, e.largest), zero - min(s.smallest, e.smallest));
+    const L bound = broadcast<L>(bounds.linear()) * extent;
+    return {less(bound, min(s.above, e.above)) | less(max(s.below, e.below), zero - bound), extent};
+}
+
+/// All axes at once; the extents come with it for free.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const ErrorBounds& bounds,
+                                              Extents<L>& extents)
+{
+    const auto along = [&](auto component) {
+        return separated_along_axis<kind, L>({component(r.start[0]), component(r.start[1]), component(r.start[2])},
+                                             {component(r.end[0]), component(r.end[1]), component(r.end[2])}, bounds);
+    };
+    const auto x = along([](const Vector3<L>& v) { return v.x; });
+    const auto y = along([](const Vector3<L>& v) { return v.y; });
+    const auto z = along([](const Vector3<L>& v) { return v.z; });
+    extents = {x.extent, y.extent, z.extent};
+    return x.apart | y.apart | z.apart;
+}
+
+/// Never coplanar: all four coefficients beyond the bound on one side.
+template <class L>
+FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const ErrorBounds& bounds)
+{
+    const L bound = broadcast<L>(bounds.cubic()) * volume;
+    const L low = min(min(f.start, f.end), min(f.thrice_second, f.thrice_third));
+    const L high = max(max(f.start, f.end), max(f.thrice_second, f.thrice_third));
+    return less(bound, low) | less(high, broadcast<L>(0.0) - bound);
+}
+
+/// The sign of a function over an interval: above `smallest`, below `largest`.
+template <class L>
+struct SignRange {
+    L smallest, largest;
+};
+
+template <class L>
+FASTCCD_INLINE SignRange<L> sign_range(L a, L b, L c)
+{
+    return {min(a, b, c), max(a, b, c)};
+}
+
+/// Edge functions of one coordinate projection over an interval.
+/// Vertex-face: p, q, t are the orientations of the vertex against the face's edges r1 r2, r2 r3, r3 r1;
+/// the vertex is outside if one is strictly positive and another strictly negative throughout.
+/// Edge-edge: p, t are the orientations of r2, r3 against the first edge, q, s those of 0, r1 against
+/// the second; the edges are apart if both of one couple are strictly on one side throughout.
+/// `bound_sum` is for s alone, which is a sum of three cross products.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> apart_in_projection(const SignRange<L>& p, const SignRange<L>& q, const SignRange<L>& t,
+                                               const SignRange<L>& s, L bound, L bound_sum)
+{
+    const L zero = broadcast<L>(0.0);
+    if constexpr (kind == PairKind::vertex_face) {
+        return less(bound, max(p.smallest, q.smallest, t.smallest)) &
+               less(min(p.largest, q.largest, t.largest), zero - bound);
+    } else {
+        return less(bound, min(p.smallest, t.smallest)) | less(max(p.largest, t.largest), zero - bound) |
+               (less(bound, q.smallest) & less(bound_sum, s.smallest)) |
+               (less(q.largest, zero - bound) & less(s.largest, zero - bound_sum));
+    }
+}
+
+/// The four vector-valued edge functions of a pair: p = r1 x r2, q = r2 x r3, and
+/// vertex-face: t = r3 x r1 (s unused); edge-edge: t = r1 x r3, s = (r3 - r2) x (r1 - r2) = (q - t) + p.
+template <class L>
+struct EdgeFunctions {
+    QuadraticVector<L> p, q, t, s;
+};
+
+template <PairKind kind, class L>
+FASTCCD_INLINE EdgeFunctions<L> edge_functions(const RelativeMotion<L>& r, const QuadraticVector<L>& p)
+{
+    const QuadraticVector<L> q = cross_product(r, 1, 2);
+    if constexpr (kind == PairKind::vertex_face) {
+        const QuadraticVector<L> t = cross_product(r, 2, 0);
+        return {p, q, t, t};
+    } else {
+        const QuadraticVector<L> t = cross_product(r, 0, 2);
+        return {p, q, t, subtract_then_add(q, t, p)};
+    }
+}
+
+/// Apart in at least one coordinate projection over the whole interval (paper, eq. 9 and 10).
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> quadratic_certificate(const EdgeFunctions<L>& e, const Scales<L>& scale,
+                                                 const ErrorBounds& bounds)
+{
+    const auto along = [&](auto component, L area) {
+        const auto range = [&](const QuadraticVector<L>& v) {
+            return sign_range(component(v.start), component(v.twice_middle), component(v.end));
+        };
+        return apart_in_projection<kind, L>(range(e.p), range(e.q), range(e.t), range(e.s),
+                                            broadcast<L>(bounds.quadratic()) * area,
+                                            broadcast<L>(bounds.quadratic_sum()) * area);
+    };
+    return along([](const Vector3<L>& v) { return v.x; }, scale.yz) |
+           along([](const Vector3<L>& v) { return v.y; }, scale.zx) |
+           along([](const Vector3<L>& v) { return v.z; }, scale.xy);
+}
+
+/// True where the coordinates are finite and their differences within the lanes' range. Every
+/// component of every r_i is a factor of f0 or f3, and a product with a NaN or an infinity is one,
+/// so f0 and f3 are finite only if all input is.
+template <class L>
+FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e)
+{
+    return less(abs(f.start) + abs(f.end), broadcast<L>(largest_extent * largest_extent * largest_extent * 16)) &
+           less(max(e.x, e.y, e.z), broadcast<L>(largest_extent));
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -1,0 +1,172 @@
+// Every rounding error bound of the library, derived, in multiples of u = 2^-53.
+//
+// Notation. X, Y, Z: the extents of the pair (relative_motion.hpp), V = X Y Z. A computed
+// component of r_i differs from the exact one by at most rho u X (Y, Z): rho = 1 where r_i is one
+// rounded difference (t_max = 1). For t_max != 1, r_i(t_max) = (1-t) p + t q with t = t_max and
+// p, q rounded differences; |(1-t) p| <= X and |t q| <= |r_i(t_max)| + |(1-t) p| <= 2 X, so the
+// error is at most u (4 |(1-t) p| + 3 |t q|) <= 10 u X, that is 1 + 1 + 1 + 1 roundings on the
+// first term (1-t, p, product, sum) and 3 on the second: rho = 10.
+//
+// First-order terms are added up below; terms in u^2 and the rounding of the bounds themselves (a
+// few products, each u) are covered by `slack`, which is added to each constant: every constant is
+// below 2^10 + 2^7 B-multiples, so u^2 terms are below 2^-40 of it, and 3 products round by 3u < 2^-50.
+#pragma once
+
+#include <lane.hpp>
+
+namespace fastccd {
+
+/// Bounds of one call; they depend on t_max alone. All are factors that multiply u times a product
+/// of extents, u included: |computed - exact| <= bound * product.
+struct ErrorBounds {
+    static constexpr double u = 0x1p-53;
+    static constexpr double slack = 2.0;
+
+    explicit constexpr ErrorBounds(double t_max) : rho{t_max == 1.0 ? 1.0 : 10.0} {}
+
+    /// Error of a component of r_i at an end of the interval, in units of u X.
+    double rho;
+
+    // ---- Bernstein coefficients over the whole interval -----------------------------------------
+
+    /// Coefficients of a component of r_i x r_j, the middle one doubled; times Y Z.
+    /// A product of two components errs by (2 rho + 1) u Y Z. An end coefficient is a difference of
+    /// two: 2 (2 rho + 1) + 2 = 4 rho + 4, and is at most 2 Y Z. The doubled middle one has four
+    /// products, two differences of size 2 and one sum of size 4:
+    /// 4 (2 rho + 1) + 2 + 2 + 4 = 8 rho + 12, and is at most 4 Y Z.
+    [[nodiscard]] FASTCCD_INLINE constexpr double quadratic() const { return (8 * rho + 12 + slack) * u; }
+
+    /// The same for (q - t) + p of three cross products (the fourth edge function of an edge-edge
+    /// pair): 3 (8 rho + 12), and sums of size 8 and 12.
+    [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_sum() const { return (24 * rho + 56 + slack) * u; }
+
+    /// Coefficients f0, 3 f1, 3 f2, f3 of the coplanarity cubic; times V.
+    /// f0 = q . c: each of three terms errs by (4 rho + 4) + 2 rho + 2, is at most 2 V; sums of size
+    /// 4 and 6: 18 rho + 28, |f0| <= 6 V. 3 f1: terms with the doubled middle coefficient err by
+    /// (8 rho + 12) + 4 rho + 4, sums of size 8 and 12; plus the terms as in f0; plus a sum of size
+    /// 18: 3 (12 rho + 16) + 20 + 18 rho + 28 + 18 = 54 rho + 114, |3 f1| <= 18 V. The larger one serves both.
+    [[nodiscard]] FASTCCD_INLINE constexpr double cubic() const { return (54 * rho + 114 + slack) * u; }
+
+    /// A coordinate difference of two points of the pair at an end of the interval; times X.
+    /// With t_max = 1 rounding is monotone: the computed difference has the exact sign (or is zero),
+    /// so any positive value is a proof and the bound is 0. Otherwise 2 rho, plus u 2 X for the
+    /// difference of two computed values.
+    [[nodiscard]] FASTCCD_INLINE constexpr double linear() const { return rho == 1.0 ? 0.0 : (2 * rho + 2 + slack) * u; }
+
+    // ---- Values and coefficients over part of the interval (blossoms, bernstein.hpp) ------------
+
+    // One lerp errs by 3 u M, M the larger magnitude of its operands (1-s, product, sum; and product,
+    // sum), so n levels on coefficients of size M add 3 n u M.
+
+    /// Blossom levels of the cubic: 3 levels, |f_k| <= 6 V.
+    static constexpr double cubic_blossom_levels = 54.0;
+    /// Blossom levels of a cross product: 2 levels, size 2 Y Z; and of the sum of three.
+    static constexpr double quadratic_blossom_levels = 12.0;
+    static constexpr double quadratic_sum_blossom_levels = 36.0;
+
+    /// Bernstein coefficients of f on [a, b]; times V. f1 is (54 rho + 114) / 3 and the
+    /// multiplication by the rounded 1/3 (2 u of 6 V): 18 rho + 38 + 12, then the blossom.
+    [[nodiscard]] FASTCCD_INLINE constexpr double cubic_on_interval() const
+    {
+        return (18 * rho + 50 + cubic_blossom_levels + slack) * u;
+    }
+    /// Times Y Z: (8 rho + 12) / 2, then the blossom. End coefficients (4 rho + 4) are smaller.
+    [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_on_interval() const
+    {
+        return (4 * rho + 6 + quadratic_blossom_levels + slack) * u;
+    }
+    /// Times Y Z: (24 rho + 56) / 2, then the blossom.
+    [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_sum_on_interval() const
+    {
+        return (12 * rho + 28 + quadratic_sum_blossom_levels + slack) * u;
+    }
+    /// Difference of two coordinates at a time; times X: each errs by rho + 3, and the difference by 2.
+    [[nodiscard]] FASTCCD_INLINE constexpr double linear_on_interval() const { return (2 * rho + 8 + slack) * u; }
+
+    // ---- Margins with which lanes decide (DESIGN: same verdict as the certified search) -----------
+
+    // A hull certificate found by lanes on [a, b] with these bounds implies that the certified search
+    // finds it on every [a', b'] inside [a, b]: exact coefficients on a part are convex combinations
+    // of those on the whole, and each of the two computations errs by at most the blossom levels.
+
+    /// Times V.
+    [[nodiscard]] FASTCCD_INLINE constexpr double cubic_on_interval_lanes() const
+    {
+        return cubic_on_interval() + (2 * cubic_blossom_levels + slack) * u;
+    }
+
+    // ---- Edge functions at one time and over its neighbourhood (projected_inclusion.hpp) ----------
+
+    /// A component of r_i(s) x r_j(s) from lerped vectors; times Y Z. Lerped components err by
+    /// rho + 3, products by 2 (rho + 3) + 1, the difference adds 2: 4 rho + 16. The margin for the
+    /// certified search is twice its own bound, so that the exact value, the search's coefficients and
+    /// the search's threshold are all on the same side: + 2 (4 rho + 18 + slack).
+    [[nodiscard]] FASTCCD_INLINE constexpr double edge_function() const
+    {
+        return (4 * rho + 16 + 2 * (4 * rho + 18 + slack) + slack) * u;
+    }
+    /// (q - t) + p of three such; sums of size 4 and 6. Margin as above: + 2 (12 rho + 64 + slack).
+    [[nodiscard]] FASTCCD_INLINE constexpr double edge_function_sum() const
+    {
+        return (12 * rho + 58 + 2 * (12 * rho + 64 + slack) + slack) * u;
+    }
+
+    // ---- Monotone pieces (sign_change.hpp) --------------------------------------------------------
+
+    // B = max |f_k| of the computed coefficients; f^ is the cubic that has exactly these. g = f^' / 3
+    // has the Bernstein coefficients d_k = f_(k+1) - f_k, each <= 2 B, computed within 2 u B.
+    // Power basis: C = d0 (2 u B); h = d1 - d0 (2 + 2 + 4 = 8 u B, |h| <= 4 B);
+    // A = (d0 + d2) - 2 d1 (8 u B from the d_k, sums of size 4 and 8: 20 u B, |A| <= 8 B).
+    //
+    // (1) The roots computed from A, h, C are exact roots of a quadratic near A t^2 + 2 h t + C:
+    // D = h^2 - A C is computed within u (h^2 + |A C| + |D|). If the computed D is negative, then
+    // A C > 0 and exact D <= 4 u |A C|, so changing C by 4 u |C| <= 8 u B leaves no real root. Otherwise
+    // q = -(h + sign(h) sqrt D) carries a relative error kappa <= 2 u, and
+    //     E = q^2 + 2 h q + A C = (D^ - D) + 2 kappa q^2 + 2 kappa h q,   |E| <= 12 u q^2,
+    // as h^2, D and |A C| are each at most q^2 up to O(u). x1 = q / A and x2 = C / q (one rounding each)
+    // have product C / A (1 + 2u) and sum -2 h / A up to (|E / q| + u |q| + u |A C / q|) / |A|, so they
+    // are the exact roots of a quadratic with the same A, C changed by 2 u |C| <= 4 u B, and 2 h changed
+    // by 14 u |q| <= 136 u B since |q| <= |h| + sqrt(h^2 + |A C|) <= 9.7 B.
+    // In sum: g differs from a quadratic with exactly the computed roots by
+    // (2 + 2 * 8 + 20) + (136 + 4) = 178 u B on [0, 1].
+    // (2) Integrated (f^' = 3 g): f^ differs by at most 3 * 178 = 534 u B on [0, 1] from a cubic f~ that is
+    // exactly monotone between the computed roots. Splitting a monotone piece once more is harmless, so
+    // any value may stand for a root that does not exist.
+    static constexpr double monotone_shift = 536.0;
+    // (3) Horner's rule in the power basis f0, 3 C, 3 h, A: coefficient errors 12 + 36 + 20 = 68 u B,
+    // roundings 8 + 20 + 20 + 26 + 26 + 27 = 127 u B.
+    static constexpr double power_basis_value = 196.0;
+
+    /// If f^, evaluated by Horner's rule, is beyond this times B on the same side at both ends of a
+    /// piece, f^ has no root in the piece: twice the shift (f^ to f~ and back), once the evaluation,
+    /// on each of the two ends of the comparison.
+    [[nodiscard]] FASTCCD_INLINE static constexpr double monotone_piece() { return (2 * monotone_shift + power_basis_value + slack) * u; }
+
+    /// On an interval of width w inside a piece, inner Bernstein coefficients of f^ differ from the
+    /// chord by at most the local second differences, w^2 |f_k - 2 f_(k+1) + f_(k+2)| <= 4 B w^2.
+    static constexpr double hull_deviation = 4.0;
+
+    // ---- Area inclusion (area_inclusion.hpp) ------------------------------------------------------
+
+    /// Sum of four doubled areas with signs; times N = X Y + Y Z + Z X. A component of a cross product
+    /// errs by 4 rho + 16 (as edge_function), of the sum of three by 12 rho + 58. Norms are at most
+    /// 2 N and 6 N; a norm errs by the components' errors plus 4 u of its size (squares, sums, root).
+    /// Three single ones: 3 (4 rho + 16 + 8); the sum: 12 rho + 58 + 24; three additions of size at most
+    /// 12 N: 36. Vertex-face and edge-edge alike: 24 rho + 190.
+    /// The edges and velocities in C1 and C2 are differences of computed vectors, off by up to 2 rho u X per
+    /// component, which may be all there is of them. A motion off by that changes a component of a cross
+    /// product by at most 8 rho u Y Z, six times over (the sum counts three), and so do edges: 96 rho.
+    [[nodiscard]] FASTCCD_INLINE constexpr double area() const { return (120 * rho + 190 + slack) * u; }
+};
+
+/// Absolute floors under the products of extents. Lanes take pairs whose coordinates differ by less
+/// than `largest_extent`; a product of two components that underflows errs by at most 2^-1075, times
+/// a third component below 2^-945, some twenty times: far below u 2^-800. Pairs at or below the floors
+/// are never certified by the lanes and go to the scalar path, which scales each axis by a power of two.
+inline constexpr double largest_extent = 0x1p130;
+inline constexpr double volume_floor = 0x1p-800;
+inline constexpr double area_floor = 0x1p-900;
+/// Smallest V for which discriminants (degree 2 in V) cannot underflow.
+inline constexpr double smallest_volume = 0x1p-300;
+
+}  // namespace fastccd

@@ -1,0 +1,43 @@
+// fastccd: narrow phase of continuous collision detection for bulk buffers of vertex-face and
+// edge-edge pairs in linear motion.
+//
+// Promise, for every pair with finite coordinates, rounding included: no contact in [0, t_max] is
+// missed; `toi` is never after the exact first contact; a reported pair is that close (README); a
+// pair certifiably apart at t = 0 gets toi > 0; the same bits on every instruction set, layout and
+// thread count; bounded work per pair. A pair with a NaN or an infinity gets toi = NaN, the others
+// are answered.
+//
+// All functions are thread-safe, keep no state, run in the caller's oneTBB arena, and do not throw
+// other than std::bad_alloc.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <fastccd/isa.hpp>
+#include <fastccd/options.hpp>
+#include <fastccd/pair_buffer.hpp>
+#include <fastccd/pair_view.hpp>
+
+namespace fastccd {
+
+/// toi[i]: lower bound of the first time of contact of pair i in [0, t_max]; +infinity: certainly
+/// apart throughout; NaN: a coordinate of the pair is NaN or infinite. `toi` has one element per pair.
+///
+/// `roots`, when not empty, has one element per pair and gets the number of roots of the
+/// coplanarity cubic (paper, eq. 5 and 12) in [0, t_max] at which there is contact, a tangential
+/// root counting as 2; 0 for no contact and for contacts whose roots cannot be counted (the motion
+/// stays coplanar to within rounding). This is the paper's odd / even distinction (Table 1).
+///
+/// O(pairs); no allocation that grows with the number of pairs.
+Status time_of_impact(PairKind kind, const PairView& pairs, const Options& options, std::span<double> toi,
+                      Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
+
+/// Appends every pair in contact to `contacts`, in pair order, and the index of every invalid pair
+/// to `invalid` when given.
+Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
+                     std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr);
+
+}  // namespace fastccd

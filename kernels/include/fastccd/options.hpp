@@ -1,0 +1,78 @@
+// Options, results and errors of the public interface.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace fastccd {
+
+/// What a pair consists of. Four points x0..x3 each move linearly over the step.
+enum class PairKind : std::uint8_t {
+    vertex_face,  ///< x0 is the vertex, x1 x2 x3 the face (paper, section 4).
+    edge_edge,    ///< x0 x1 is the first edge, x2 x3 the second (paper, section 5).
+};
+
+/// Instruction sets the kernels are built for. Results are the same bits on all.
+enum class Isa : std::uint8_t {
+    automatic,  ///< The widest one that this machine and this build offer.
+    scalar,     ///< One pair at a time, in plain double.
+    sse2,       ///< 2 pairs at a time.
+    avx2,       ///< 4 pairs at a time.
+    avx512,     ///< 8 pairs at a time (needs AVX-512 F, DQ and BW).
+    neon,       ///< 2 pairs at a time (arm64).
+};
+
+struct Options {
+    /// E_tol: width of the time interval, in units of the step (t in [0, 1]), within which
+    /// the first contact is located. Positive and finite; values below 2^-50 act as 2^-50.
+    double tolerance = 1e-9;
+    /// Contact is searched in [0, t_max], 0 < t_max <= 1.
+    double t_max = 1.0;
+    /// Which kernels to run; Isa::automatic honours the environment variable FASTCCD_ISA.
+    Isa isa = Isa::automatic;
+    /// Run the certified search alone on every pair. Slower; the results are the same bits.
+    bool reference = false;
+};
+
+/// One contact of a compact result.
+struct Contact {
+    std::size_t pair;  ///< Index of the pair in the input.
+    double toi;        ///< Lower bound of its first time of contact, in [0, t_max].
+};
+
+/// Totals of one call.
+struct Summary {
+    std::size_t pairs = 0;         ///< Pairs asked about.
+    std::size_t contacts = 0;      ///< Pairs reported in contact.
+    std::size_t odd = 0;           ///< Contacts at an odd number of roots, when roots were asked for.
+    std::size_t even = 0;          ///< Contacts at an even number of roots, when roots were asked for.
+    std::size_t invalid = 0;       ///< Pairs with a NaN or an infinity.
+    std::size_t scalar_pairs = 0;  ///< Pairs decided by the certified search.
+    Contact earliest{std::numeric_limits<std::size_t>::max(),
+                     std::numeric_limits<double>::infinity()};  ///< Smallest toi, ties to the smaller index.
+    Isa isa = Isa::automatic;      ///< Kernels that ran.
+};
+
+enum class Error : std::uint8_t {
+    none,
+    bad_tolerance,         ///< tolerance is not a positive finite number.
+    bad_t_max,             ///< t_max is not in (0, 1].
+    wrong_size,            ///< an output span does not have one element per pair, or a view is malformed.
+    isa_unavailable,       ///< options.isa is not in this build or not on this machine.
+    bad_isa_environment,   ///< FASTCCD_ISA names no instruction set, or one that is unavailable.
+    index_out_of_range,    ///< an index of pair `pair` points outside its array.
+};
+
+/// Outcome of a call: `error` and, where one pair is at fault, its index.
+struct Status {
+    Error error = Error::none;
+    std::size_t pair = std::numeric_limits<std::size_t>::max();
+
+    [[nodiscard]] constexpr bool ok() const noexcept { return error == Error::none; }
+};
+
+/// A sentence for people; static storage.
+[[nodiscard]] const char* message(Error error) noexcept;
+
+}  // namespace fastccd

@@ -1,0 +1,61 @@
+// An owning buffer of pairs in the native blocked layout.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <span>
+
+#include <fastccd/pair_view.hpp>
+
+namespace fastccd {
+
+/// `size` pairs in 64-byte aligned blocks [24 coordinates][8 lanes] of double, 192 bytes a
+/// pair. Starts as all zeros; the lanes that pad the last block stay zero and are ignored.
+class PairBuffer {
+public:
+    PairBuffer() = default;
+
+    explicit PairBuffer(std::size_t size) : size_{size}
+    {
+        const std::size_t bytes = block_count() * block_coordinates * sizeof(double);
+        if (bytes == 0) return;
+        data_.reset(static_cast<double*>(::operator new(bytes, std::align_val_t{alignment})));
+        std::memset(data_.get(), 0, bytes);
+    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    [[nodiscard]] std::size_t block_count() const noexcept { return (size_ + block_pairs - 1) / block_pairs; }
+    [[nodiscard]] double* data() noexcept { return data_.get(); }
+    [[nodiscard]] const double* data() const noexcept { return data_.get(); }
+
+    /// Coordinate c (see pair_coordinates) of pair i.
+    [[nodiscard]] double& at(std::size_t i, std::size_t c) noexcept { return data_[index(i, c)]; }
+    [[nodiscard]] double at(std::size_t i, std::size_t c) const noexcept { return data_[index(i, c)]; }
+
+    /// Sets all 24 coordinates of pair i.
+    void set(std::size_t i, std::span<const double, pair_coordinates> coordinates) noexcept
+    {
+        for (std::size_t c = 0; c < pair_coordinates; ++c) at(i, c) = coordinates[c];
+    }
+
+    [[nodiscard]] PairView view() const noexcept { return PairView::blocked(data_.get(), size_); }
+
+private:
+    static constexpr std::size_t alignment = 64;  // one cache line, one AVX-512 register
+
+    struct Release {
+        void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{alignment}); }
+    };
+
+    [[nodiscard]] static std::size_t index(std::size_t i, std::size_t c) noexcept
+    {
+        return (i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs;
+    }
+
+    std::unique_ptr<double[], Release> data_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace fastccd

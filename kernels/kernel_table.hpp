@@ -1,0 +1,63 @@
+// What the kernels of one instruction set export, and the memory they work in. Plain data only: this
+// header is included by translation units compiled for different instruction sets.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <fastccd/options.hpp>
+#include <fastccd/pair_view.hpp>
+#include <search_parameters.hpp>
+
+namespace fastccd {
+
+/// Pairs per tile, the unit of scheduling and of results. 1,024 pairs are 192 KiB of packed input, so that a
+/// tile with its scratch stays within half of a 512 KiB L2 cache. A multiple of block_pairs.
+inline constexpr std::size_t tile_pairs = 1024;
+
+/// A queue of candidate roots between two stages, structure of arrays.
+struct RootQueue {
+    /// r1..r3 at both ends (18), f (4), threshold, piece (2), guess, products of extents (4), pair.
+    static constexpr unsigned fields = 31;
+    /// A stage drains the queue when it holds this many roots; a batch adds at most 3 per lane ...
+    static constexpr unsigned drain_at = 64;
+    static constexpr unsigned most_added = 3 * 8;
+    /// ... and storing the last ones writes a full batch.
+    static constexpr unsigned capacity = drain_at + most_added + 8;
+
+    alignas(64) double data[fields][capacity];
+    unsigned size;
+};
+
+/// Results of one tile and scratch for it; one per thread, reused.
+struct TileScratch {
+    alignas(64) double parameter[tile_pairs];  ///< s of the first contact, +infinity if there is none.
+    std::uint8_t roots[tile_pairs];            ///< Contact roots found by the lanes.
+    std::uint8_t is_undecided[tile_pairs];
+    std::uint16_t undecided[tile_pairs];       ///< Pairs of the tile left to the certified search, in any order.
+    unsigned undecided_count;
+    RootQueue candidates;  ///< Pieces with a sign change, before refinement.
+    RootQueue survivors;   ///< Roots not dismissed on a coarse bracket.
+    alignas(64) double block[block_coordinates];  ///< A block in the native layout, where the input is not.
+};
+
+/// `count` pairs of `pairs` from `first` on; first is a multiple of tile_pairs, count at most tile_pairs.
+struct TileRequest {
+    PairKind kind;
+    const PairView* pairs;
+    std::size_t first;
+    std::size_t count;
+    const SearchParameters* parameters;
+};
+
+struct KernelTable {
+    Isa isa;
+    unsigned lanes;
+    /// Fills parameter, roots, undecided and undecided_count of the scratch.
+    void (*run_tile)(const TileRequest&, TileScratch&);
+};
+
+/// Tables in this build; null where the instruction set was not built.
+const KernelTable* kernel_table(Isa isa) noexcept;
+
+}  // namespace fastccd

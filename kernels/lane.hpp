@@ -1,0 +1,125 @@
+// What a lane type must provide, and the lane type `double`.
+//
+// Every kernel is one template on a lane type L: `double` (one pair) or `xsimd::batch<double, A>`
+// (several pairs side by side). Only + - * / and square root, all correctly rounded by IEEE 754,
+// comparisons, and the min / max below may decide a result: that is what makes the results the
+// same bits for every L. There is no fused multiply-add (contraction is switched off by the build).
+//
+// All kernels live in a namespace of their own per instruction set: two translation units compiled
+// with different instruction sets must never emit the same inline function, because the linker
+// would keep one copy for both.
+#pragma once
+
+#ifndef FASTCCD_KERNEL_NAMESPACE
+#define FASTCCD_KERNEL_NAMESPACE portable
+#endif
+
+#define FASTCCD_INLINE inline __attribute__((always_inline))
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Comparison result of the lane type `double`.
+struct BoolMask {
+    bool value;
+
+    friend FASTCCD_INLINE BoolMask operator&(BoolMask a, BoolMask b) { return {a.value && b.value}; }
+    friend FASTCCD_INLINE BoolMask operator|(BoolMask a, BoolMask b) { return {a.value || b.value}; }
+    friend FASTCCD_INLINE BoolMask operator!(BoolMask a) { return {!a.value}; }
+};
+
+/// Operations on a lane type that are not operators. Specialised for each lane type.
+template <class L>
+struct Lane;
+
+template <>
+struct Lane<double> {
+    using Mask = BoolMask;
+    static constexpr unsigned width = 1;
+
+    static FASTCCD_INLINE double broadcast(double x) { return x; }
+    static FASTCCD_INLINE double load(const double* p) { return *p; }
+    static FASTCCD_INLINE void store(double* p, double x) { *p = x; }
+    /// 0, 1, 2, ... : the number of each lane.
+    static FASTCCD_INLINE double lane_number() { return 0.0; }
+
+    // MINPD's and MAXPD's rule, in every lane type: the second operand if either is NaN or both are zero.
+    static FASTCCD_INLINE double min(double a, double b) { return a < b ? a : b; }
+    static FASTCCD_INLINE double max(double a, double b) { return a > b ? a : b; }
+    static FASTCCD_INLINE double abs(double a) { return __builtin_fabs(a); }
+    static FASTCCD_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
+    static FASTCCD_INLINE double select(Mask m, double yes, double no) { return m.value ? yes : no; }
+
+    static FASTCCD_INLINE Mask less(double a, double b) { return {a < b}; }
+    static FASTCCD_INLINE Mask less_equal(double a, double b) { return {a <= b}; }
+
+    /// Bit i is lane i.
+    static FASTCCD_INLINE unsigned bits(Mask m) { return m.value ? 1u : 0u; }
+    /// Writes the lanes whose bit is set one after another to p; may write `width` elements.
+    static FASTCCD_INLINE void compress_store(double* p, unsigned bits, double x)
+    {
+        if (bits != 0) *p = x;
+    }
+};
+
+template <class L>
+using LaneMask = typename Lane<L>::Mask;
+
+template <class L>
+FASTCCD_INLINE L broadcast(double x)
+{
+    return Lane<L>::broadcast(x);
+}
+template <class L>
+FASTCCD_INLINE L min(L a, L b)
+{
+    return Lane<L>::min(a, b);
+}
+template <class L>
+FASTCCD_INLINE L max(L a, L b)
+{
+    return Lane<L>::max(a, b);
+}
+template <class L>
+FASTCCD_INLINE L min(L a, L b, L c)
+{
+    return min(min(a, b), c);
+}
+template <class L>
+FASTCCD_INLINE L max(L a, L b, L c)
+{
+    return max(max(a, b), c);
+}
+template <class L>
+FASTCCD_INLINE L abs(L a)
+{
+    return Lane<L>::abs(a);
+}
+template <class L>
+FASTCCD_INLINE L sqrt(L a)
+{
+    return Lane<L>::sqrt(a);
+}
+template <class L>
+FASTCCD_INLINE L select(LaneMask<L> m, L yes, L no)
+{
+    return Lane<L>::select(m, yes, no);
+}
+/// a < b in each lane; false if either is NaN.
+template <class L>
+FASTCCD_INLINE LaneMask<L> less(L a, L b)
+{
+    return Lane<L>::less(a, b);
+}
+template <class L>
+FASTCCD_INLINE LaneMask<L> less_equal(L a, L b)
+{
+    return Lane<L>::less_equal(a, b);
+}
+
+/// Three components, one per axis.
+template <class L>
+struct Vector3 {
+    L x, y, z;
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -1,0 +1,57 @@
+// Inclusion over a neighbourhood of a time, decided in the coordinate projections.
+//
+// The counterpart of Lemma 4.1 for edge functions: within |s - c| <= delta a component of r_i moves by
+// at most 2 delta X, so a product of two components changes by at most 4 (delta + delta^2) Y Z and an
+// edge function (two products) by 8 (delta + delta^2) Y Z. The same bound holds for the mixed blossom
+// values F(a, b) with a and b in the neighbourhood. Signs beyond the bound hold throughout.
+#pragma once
+
+#include <certificates.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+template <class L>
+struct Inclusion {
+    LaneMask<L> absent;   ///< Apart in some projection over the whole neighbourhood.
+    LaneMask<L> present;  ///< Properly inside in some projection over the whole neighbourhood.
+};
+
+/// `present` proves contact at every coplanar time of the neighbourhood. Vertex-face: three edge functions
+/// of one strict sign put the vertex inside a projected triangle of non-zero area. Edge-edge: the edges
+/// cross properly in the projection. Either way the plane of the four points is not parallel to the
+/// direction of projection, so the projection is one-to-one on it.
+/// `absent` leaves the margin that makes the certified search find the same on every part.
+template <PairKind kind, class L>
+FASTCCD_INLINE Inclusion<L> projected_inclusion(const RelativeMotion<L>& r, const Scales<L>& scale, L centre, L delta,
+                                                const ErrorBounds& bounds)
+{
+    const Vector3<L> r1 = position(r, 0, centre), r2 = position(r, 1, centre), r3 = position(r, 2, centre);
+    const Vector3<L> p = cross(r1, r2), q = cross(r2, r3);
+    const Vector3<L> t = kind == PairKind::vertex_face ? cross(r3, r1) : cross(r1, r3);
+    const Vector3<L> s = kind == PairKind::vertex_face ? t : add(subtract(q, t), p);
+
+    const L zero = broadcast<L>(0.0);
+    const L change = broadcast<L>(8.0) * (delta + delta * delta);
+    const L per_area = change + broadcast<L>(bounds.edge_function());
+    const L per_area_sum = broadcast<L>(3.0) * change + broadcast<L>(bounds.edge_function_sum());
+
+    const auto along = [&](L pk, L qk, L tk, L sk, L area) -> Inclusion<L> {
+        const L bound = per_area * area, bound_sum = per_area_sum * area;
+        const LaneMask<L> absent = apart_in_projection<kind, L>({pk, pk}, {qk, qk}, {tk, tk}, {sk, sk}, bound, bound_sum);
+        if constexpr (kind == PairKind::vertex_face) {
+            return {absent, less(bound, min(pk, qk, tk)) | less(max(pk, qk, tk), zero - bound)};
+        } else {
+            const LaneMask<L> across_first = (less(bound, pk) & less(tk, zero - bound)) |
+                                             (less(bound, tk) & less(pk, zero - bound));
+            const LaneMask<L> across_second = (less(bound, qk) & less(sk, zero - bound_sum)) |
+                                              (less(bound_sum, sk) & less(qk, zero - bound));
+            return {absent, across_first & across_second};
+        }
+    };
+    const Inclusion<L> x = along(p.x, q.x, t.x, s.x, scale.yz);
+    const Inclusion<L> y = along(p.y, q.y, t.y, s.y, scale.zx);
+    const Inclusion<L> z = along(p.z, q.z, t.z, s.z, scale.xy);
+    return {x.absent | y.absent | z.absent, x.present | y.present | z.present};
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

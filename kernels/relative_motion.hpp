@@ -1,0 +1,64 @@
+// The motion of a pair relative to its point x0: r_i(t) = x_i(t) - x_0(t), i = 1, 2, 3.
+//
+// These are the paper's alpha, beta, gamma (eq. 8) and their partners at the end of the step.
+// A vertex-face pair touches where the origin meets the triangle r1 r2 r3, an edge-edge pair where
+// the segment 0 r1 meets the segment r2 r3. Differences first: a difference of two doubles has
+// relative error at most u and never a wrong sign, however far the pair is from the origin.
+#pragma once
+
+#include <fastccd/options.hpp>
+#include <lane.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Vectors at both ends of the searched interval, in the parameter s = t / t_max of [0, 1].
+template <class L>
+struct RelativeMotion {
+    Vector3<L> start[3];
+    Vector3<L> end[3];
+};
+
+/// p + s (q - p) as (1 - s) p + s q, which neither overflows nor cancels.
+template <class L>
+FASTCCD_INLINE L lerp(L p, L q, L s)
+{
+    return (broadcast<L>(1.0) - s) * p + s * q;
+}
+
+/// r_i at the parameter s of [0, 1].
+template <class L>
+FASTCCD_INLINE Vector3<L> position(const RelativeMotion<L>& r, int i, L s)
+{
+    return {lerp(r.start[i].x, r.end[i].x, s), lerp(r.start[i].y, r.end[i].y, s), lerp(r.start[i].z, r.end[i].z, s)};
+}
+
+/// From 24 coordinates at coordinates[c * stride + lane], in the order of PairView.
+/// t_max != 1 moves the end of the motion to t_max; error_bound.hpp accounts for that rounding.
+template <class L>
+FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int stride, double t_max)
+{
+    const auto at = [=](int end, int point, int axis) {
+        return Lane<L>::load(coordinates + (12 * end + 3 * point + axis) * stride);
+    };
+    const auto relative = [&](int end, int i) {
+        return Vector3<L>{at(end, i, 0) - at(end, 0, 0), at(end, i, 1) - at(end, 0, 1), at(end, i, 2) - at(end, 0, 2)};
+    };
+    RelativeMotion<L> r;
+    for (int i = 0; i < 3; ++i) {
+        r.start[i] = relative(0, i + 1);
+        r.end[i] = relative(1, i + 1);
+    }
+    if (t_max != 1.0)
+        for (int i = 0; i < 3; ++i) r.end[i] = position(r, i, broadcast<L>(t_max));
+    return r;
+}
+
+/// Largest |component| per axis over r1, r2, r3 and both ends: the scale of every rounding error.
+/// Per axis, so that anisotropic pairs keep tight bounds: each term of the polynomials of this
+/// library is a product of components along different axes.
+template <class L>
+struct Extents {
+    L x, y, z;
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -1,0 +1,32 @@
+// What one call asks for, in the form the kernels use.
+#pragma once
+
+#include <error_bound.hpp>
+
+namespace fastccd {
+
+/// Times are s = t / t_max in [0, 1]. The step is cut into 2^depth leaves of equal width; the answer for a
+/// pair is the left end of the first leaf that has no certificate of absence, which makes it independent
+/// of the way it is found.
+struct SearchParameters {
+    double t_max;
+    ErrorBounds bounds;
+    double leaf_width;  ///< w = 2^-depth, the largest with w t_max <= E_tol (at least 2^-50).
+    double leaf_count;  ///< 2^depth.
+    bool count_roots;
+
+    SearchParameters(double tolerance, double t_max_, bool count_roots_)
+        : t_max{t_max_}, bounds{t_max_}, leaf_width{1.0}, leaf_count{1.0}, count_roots{count_roots_}
+    {
+        while (leaf_width * t_max > tolerance && leaf_width > 0x1p-50) {
+            leaf_width *= 0.5;
+            leaf_count *= 2.0;
+        }
+    }
+
+    /// A time not after s t_max: the product is rounded up by at most a factor 1 + u, and
+    /// (1 + u)^2 (1 - 2 u) < 1.
+    [[nodiscard]] double time(double s) const { return t_max == 1.0 ? s : (s * t_max) * (1.0 - 0x1p-52); }
+};
+
+}  // namespace fastccd

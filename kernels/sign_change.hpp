@@ -1,0 +1,89 @@
+// Sign-change intervals of the coplanarity cubic (paper, section 6).
+//
+// The roots of f' cut [0, 1] into at most three monotone pieces; a piece holds a root of f if and only
+// if the signs at its ends differ. With rounding: error_bound.hpp (monotone_piece) shows that end values
+// beyond +-threshold on one side prove that there is no root in the piece. A value within the threshold
+// leaves the pair undecided: it goes to the certified search.
+#pragma once
+
+#include <bernstein.hpp>
+#include <error_bound.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// f in the power basis: ((c3 s + c2) s + c1) s + c0.
+template <class L>
+struct PowerCubic {
+    L c0, c1, c2, c3;
+};
+
+template <class L>
+FASTCCD_INLINE L evaluate(const PowerCubic<L>& f, L s)
+{
+    return ((f.c3 * s + f.c2) * s + f.c1) * s + f.c0;
+}
+
+template <class L>
+struct MonotonePieces {
+    PowerCubic<L> f;
+    L time[4];           ///< 0, the extrema of f inside (0, 1) in order (or 0 or 1), 1.
+    L value[4];          ///< f there.
+    L threshold;         ///< A value certainly has its sign, with margin, if it is beyond this.
+    LaneMask<L> certain; ///< All four values are beyond the threshold.
+};
+
+/// threshold = monotone_piece() B + hull_deviation w^2 B + (bounds of the certified search) V: with two end
+/// values beyond it, f is far enough from zero in the whole piece that every interval of width
+/// w = leaf_width, inside the piece or across its ends, passes the search's cubic certificate.
+template <class L>
+FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, const ErrorBounds& bounds,
+                                                 double leaf_width)
+{
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), three = broadcast<L>(3.0);
+    // f' / 3 = C + 2 h s + A s^2
+    const L d0 = f.c1 - f.c0, d1 = f.c2 - f.c1, d2 = f.c3 - f.c2;
+    const L h = d1 - d0;
+    const L A = (d0 + d2) - (d1 + d1);
+
+    // Stable roots: q = -(h + sign(h) sqrt D), x1 = q / A, x2 = C / q.
+    const L D = h * h - A * d0;
+    const L root = sqrt(max(D, zero));
+    const L q = select<L>(less(h, zero), root - h, zero - (root + h));
+    // MINPD's rule turns 0 / 0 into the second operand, and infinities are clipped: such a root does
+    // not exist, and a cut anywhere is harmless.
+    const L x1 = max(min(q / A, one), zero);
+    const L x2 = max(min(d0 / q, one), zero);
+    const LaneMask<L> none = less(D, zero);  // monotone throughout: both cuts at 0
+    const L first = select<L>(none, zero, min(x1, x2));
+    const L second = select<L>(none, zero, max(x1, x2));
+
+    MonotonePieces<L> pieces;
+    pieces.f = {f.c0, three * d0, three * h, A};
+    pieces.time[0] = zero;
+    pieces.time[1] = first;
+    pieces.time[2] = second;
+    pieces.time[3] = one;
+    pieces.value[0] = f.c0;
+    pieces.value[1] = evaluate(pieces.f, first);
+    pieces.value[2] = evaluate(pieces.f, second);
+    pieces.value[3] = f.c3;
+
+    const L B = max(largest(f), zero - smallest(f));
+    const double per_B = ErrorBounds::monotone_piece() + ErrorBounds::hull_deviation * leaf_width * leaf_width;
+    const double per_V = bounds.cubic_on_interval_lanes();
+    pieces.threshold = broadcast<L>(per_B) * B + broadcast<L>(per_V) * volume;
+    const L closest = min(min(abs(pieces.value[0]), abs(pieces.value[1])),
+                          min(abs(pieces.value[2]), abs(pieces.value[3])));
+    pieces.certain = less(pieces.threshold, closest);
+    return pieces;
+}
+
+/// True where the signs of a and b differ (neither is zero).
+template <class L>
+FASTCCD_INLINE LaneMask<L> opposite_signs(L a, L b)
+{
+    const L zero = broadcast<L>(0.0);
+    return (less(a, zero) & less(zero, b)) | (less(zero, a) & less(b, zero));
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -1,0 +1,52 @@
+// The interval [0, 1] is cut into 2^depth leaves. Intervals are examined earliest first; one with a
+// certificate is dropped, a wider one is halved, and the first leaf without a certificate is the answer.
+// Everything before that leaf has a certificate, so its left end is a lower bound of the first contact.
+//
+// A leaf in which contact cannot be proven either is halved further, below E_tol: this removes near misses
+// that are apart by more than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound.
+#include <certified_search.hpp>
+
+#include <cmath>
+#include <limits>
+
+#include <contact_roots.hpp>
+#include <pair_polynomials.hpp>
+#include <scaling.hpp>
+
+namespace fastccd::scalar {
+
+namespace {
+
+bool finite(const double* coordinates)
+{
+    for (int c = 0; c < 24; ++c)
+        if (!std::isfinite(coordinates[c])) return false;
+    return true;
+}
+
+template <PairKind kind>
+SearchResult search(const double* coordinates, const SearchParameters& parameters)
+{
+    const PairPolynomials<kind> pair{scaled_relative_motion(coordinates, parameters.t_max), parameters.bounds};
+    SearchResult result{std::numeric_limits<double>::infinity(), 0, 1};
+    if (pair.apart()) return result;
+
+    LeafSearch<kind> leaves{pair, parameters};
+    const double first = leaves.first_contact();
+    result.intervals = leaves.intervals();
+    if (first > 1.0) return result;
+    result.toi = parameters.time(first);
+    if (parameters.count_roots) result.roots = count_contact_roots(pair, parameters);
+    return result;
+}
+
+}  // namespace
+
+SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters)
+{
+    if (!finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters)
+                                         : search<PairKind::edge_edge>(coordinates, parameters);
+}
+
+}  // namespace fastccd::scalar

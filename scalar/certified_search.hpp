@@ -1,0 +1,24 @@
+// The certified search for the first time of contact of one pair: the reference for everything.
+#pragma once
+
+#include <cstdint>
+
+#include <fastccd/options.hpp>
+#include <search_parameters.hpp>
+
+namespace fastccd::scalar {
+
+/// Hard cap on the intervals examined for one pair; on reaching it the answer is contact, with the lower
+/// bound reached. Far above what any pair of the public data needs.
+inline constexpr unsigned most_intervals = 4096;
+
+struct SearchResult {
+    double toi;          ///< In [0, t_max]; +infinity: certainly apart; NaN: invalid coordinates.
+    std::uint8_t roots;  ///< Contact roots, if asked for; 0 if there is no contact or they cannot be counted.
+    unsigned intervals;  ///< Examined on the way, for benchmarks and tests.
+};
+
+/// `coordinates`: 24, in the order of PairView.
+SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters);
+
+}  // namespace fastccd::scalar

@@ -1,0 +1,105 @@
+// Number of roots of the coplanarity cubic at which there is contact (the paper's odd and even collisions,
+// Table 1), for one pair.
+//
+// Where inclusion is strict over an interval, the contact roots in it are the roots of the cubic, and one sign
+// variation of its Bernstein coefficients is exactly one root (Descartes). Intervals that stay unclear down to
+// a leaf form clusters: a cluster across which the sign changes counts as one root, one with the same sign on
+// both sides as a tangential (double) root.
+#pragma once
+
+#include <cstdint>
+
+#include <leaf_search.hpp>
+
+namespace fastccd::scalar {
+
+template <PairKind kind>
+class RootCounter {
+public:
+    RootCounter(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters)
+        : pair{polynomials}, parameters{search_parameters}, leaves{polynomials, search_parameters}
+    {
+    }
+
+    /// 0 if the roots cannot be counted.
+    std::uint8_t count()
+    {
+        IntervalStack stack;
+        stack.push({0.0, 1.0});
+        for (unsigned intervals = 0; !stack.empty(); ++intervals) {
+            if (intervals == most_intervals) return 0;
+            const Interval i = stack.pop();
+            if (i.b - i.a < 1.0 && pair.apart(i)) {
+                close_cluster();
+                continue;
+            }
+            const Cubic<double> f = pair.coplanarity(i);
+            if (one_variation(f) && pair.included(i)) {
+                close_cluster();
+                roots = static_cast<std::uint8_t>(std::min(roots + 1, 255));
+            } else if (i.b - i.a > parameters.leaf_width && !(flat(f) && i.b - i.a <= widest_flat)) {
+                stack.push_halves(i);
+            } else if (i.b - i.a <= parameters.leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
+                close_cluster();
+            } else {
+                extend_cluster(f);
+            }
+        }
+        close_cluster();
+        return countable ? roots : std::uint8_t{0};
+    }
+
+private:
+    /// An interval on which the cubic vanishes within rounding is halved down to this width only: its roots
+    /// cannot be told apart, and always-coplanar motion must not be followed leaf by leaf.
+    static constexpr double widest_flat = 0x1p-6;
+
+    [[nodiscard]] int sign(double value) const
+    {
+        return value > pair.cubic_bound() ? 1 : value < -pair.cubic_bound() ? -1 : 0;
+    }
+
+    /// Certainly exactly one sign variation: opposite ends, and the inner two not a further one and back.
+    [[nodiscard]] bool one_variation(const Cubic<double>& f) const
+    {
+        const int first = sign(f.c0), last = sign(f.c3);
+        return first * last == -1 && (sign(f.c1) == first || sign(f.c2) == last);
+    }
+
+    [[nodiscard]] bool flat(const Cubic<double>& f) const
+    {
+        return sign(smallest(f)) == 0 && sign(largest(f)) == 0;
+    }
+
+    void extend_cluster(const Cubic<double>& f)
+    {
+        if (!open) before = sign(f.c0);
+        open = true;
+        after = sign(f.c3);
+    }
+
+    void close_cluster()
+    {
+        if (!open) return;
+        open = false;
+        if (before == 0 && after == 0) countable = false;
+        const int more = before != 0 && before == after ? 2 : 1;
+        roots = static_cast<std::uint8_t>(std::min(roots + more, 255));
+    }
+
+    const PairPolynomials<kind>& pair;
+    const SearchParameters& parameters;
+    LeafSearch<kind> leaves;
+    bool open = false;
+    bool countable = true;
+    int before = 0, after = 0;
+    std::uint8_t roots = 0;
+};
+
+template <PairKind kind>
+std::uint8_t count_contact_roots(const PairPolynomials<kind>& pair, const SearchParameters& parameters)
+{
+    return RootCounter<kind>{pair, parameters}.count();
+}
+
+}  // namespace fastccd::scalar

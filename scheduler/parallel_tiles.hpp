@@ -1,0 +1,51 @@
+// Tiles in parallel, in the caller's oneTBB arena.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include <tbb/blocked_range.h>
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+
+#include <tile_runner.hpp>
+
+namespace fastccd {
+
+/// Memory of one worker during one call: under 1 MiB, whatever the number of pairs.
+struct TileWorker {
+    TileScratch scratch;
+    TileResult result;
+    Summary totals;
+};
+static_assert(sizeof(TileWorker) < 512 * 1024);
+
+/// Runs every tile of the job and calls consume(worker, first, count) after each, on the worker's thread.
+/// Tiles do not depend on the number of threads. One tile runs on the caller's thread without a task.
+template <class Worker, class Consume>
+Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Consume consume)
+{
+    const std::size_t size = job.pairs->size();
+    const std::size_t tiles = (size + tile_pairs - 1) / tile_pairs;
+    const auto run = [&](std::size_t tile, Worker& worker) {
+        const std::size_t first = tile * tile_pairs;
+        const std::size_t count = std::min(tile_pairs, size - first);
+        run_tile(job, first, count, worker.scratch, worker.result, worker.totals);
+        consume(worker, first, count);
+    };
+    if (tiles == 1) {
+        run(0, workers.local());
+    } else if (tiles > 1) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles), [&](const auto& range) {
+            Worker& worker = workers.local();
+            for (std::size_t tile = range.begin(); tile != range.end(); ++tile) run(tile, worker);
+        });
+    }
+    Summary summary;
+    summary.pairs = size;
+    summary.isa = job.kernels != nullptr ? job.kernels->isa : Isa::scalar;
+    workers.combine_each([&](const Worker& worker) { add(summary, worker.totals); });
+    return summary;
+}
+
+}  // namespace fastccd

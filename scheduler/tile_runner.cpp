@@ -1,0 +1,116 @@
+#include <tile_runner.hpp>
+
+#include <cmath>
+#include <cstdlib>
+
+#include <certified_search.hpp>
+#include <fastccd/isa.hpp>
+
+namespace fastccd {
+
+namespace {
+
+template <class T>
+void load_pair(const PairView& pairs, std::size_t i, double* coordinates)
+{
+    for (std::size_t c = 0; c < pair_coordinates; ++c) {
+        switch (pairs.layout()) {
+            case PairView::Layout::blocked:
+                coordinates[c] = static_cast<const T*>(pairs.data())[(i / block_pairs) * block_coordinates +
+                                                                     c * block_pairs + i % block_pairs];
+                break;
+            case PairView::Layout::interleaved:
+                coordinates[c] = static_cast<const T*>(pairs.data())[i * pair_coordinates + c];
+                break;
+            case PairView::Layout::strided:
+                coordinates[c] = static_cast<const T*>(pairs.data(c))[static_cast<std::ptrdiff_t>(i) * pairs.stride()];
+                break;
+        }
+    }
+}
+
+void search_pair(const Job& job, std::size_t first, std::size_t i, TileResult& result)
+{
+    double coordinates[pair_coordinates];
+    if (job.pairs->scalar() == PairView::Scalar::float64)
+        load_pair<double>(*job.pairs, first + i, coordinates);
+    else
+        load_pair<float>(*job.pairs, first + i, coordinates);
+    const scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
+    result.toi[i] = found.toi;
+    result.roots[i] = found.roots;
+}
+
+/// Isa::automatic honours FASTCCD_ISA; then the choice must be available.
+Status choose_kernels(Isa wanted, const KernelTable*& kernels)
+{
+    Error refusal = Error::isa_unavailable;
+    if (wanted == Isa::automatic) {
+        if (const char* forced = std::getenv("FASTCCD_ISA"); forced != nullptr && *forced != '\0') {
+            refusal = Error::bad_isa_environment;
+            const auto named = isa_from_name(forced);
+            if (!named) return {refusal};
+            wanted = *named;
+        }
+    }
+    if (wanted == Isa::automatic) wanted = best_isa();
+    if (!isa_available(wanted)) return {refusal};
+    kernels = kernel_table(wanted);
+    return {};
+}
+
+}  // namespace
+
+Status prepare(PairKind kind, const PairView& pairs, const Options& options, bool count_roots, Job& job)
+{
+    if (!(options.tolerance > 0.0) || std::isinf(options.tolerance)) return {Error::bad_tolerance};
+    if (!(options.t_max > 0.0 && options.t_max <= 1.0)) return {Error::bad_t_max};
+    if (pairs.size() > 0 && pairs.data() == nullptr) return {Error::wrong_size};
+    const KernelTable* kernels = nullptr;
+    if (!options.reference)
+        if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
+    job = {kind, &pairs, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels};
+    return {};
+}
+
+void run_tile(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch, TileResult& result,
+              Summary& totals)
+{
+    if (job.kernels != nullptr) {
+        job.kernels->run_tile({job.kind, job.pairs, first, count, &job.parameters}, scratch);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double s = scratch.parameter[i];
+            result.toi[i] = s <= 1.0 ? job.parameters.time(s) : s;
+            result.roots[i] = scratch.roots[i];
+        }
+        for (unsigned k = 0; k < scratch.undecided_count; ++k) search_pair(job, first, scratch.undecided[k], result);
+        totals.scalar_pairs += scratch.undecided_count;
+    } else {
+        for (std::size_t i = 0; i < count; ++i) search_pair(job, first, i, result);
+        totals.scalar_pairs += count;
+    }
+
+    for (std::size_t i = 0; i < count; ++i) {
+        const double toi = result.toi[i];
+        if (toi <= 1.0) {
+            ++totals.contacts;
+            if (job.parameters.count_roots && result.roots[i] != 0) ++(result.roots[i] % 2 == 1 ? totals.odd : totals.even);
+            if (toi < totals.earliest.toi) totals.earliest = {first + i, toi};
+        } else if (std::isnan(toi)) {
+            ++totals.invalid;
+        }
+    }
+}
+
+void add(Summary& whole, const Summary& part)
+{
+    whole.contacts += part.contacts;
+    whole.odd += part.odd;
+    whole.even += part.even;
+    whole.invalid += part.invalid;
+    whole.scalar_pairs += part.scalar_pairs;
+    const Contact &a = whole.earliest, &b = part.earliest;
+    if (b.toi < a.toi || (b.toi == a.toi && b.pair < a.pair)) whole.earliest = b;
+}
+
+}  // namespace fastccd

@@ -1,0 +1,41 @@
+# One source, compiled once per instruction set: fastccd_add_isa_kernels(TARGET) adds the objects.
+
+function(fastccd_add_isa_kernels target)
+  set(portable scalar)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+    set(wide sse2 avx2 avx512)
+    target_compile_definitions(${target} PRIVATE FASTCCD_HAVE_X86)
+  elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64|ARM64)$")
+    set(wide neon)
+    target_compile_definitions(${target} PRIVATE FASTCCD_HAVE_NEON)
+  endif()
+  set(arch_sse2 sse2)
+  set(arch_avx2 avx2)
+  set(arch_avx512 avx512bw)
+  set(arch_neon neon64)
+  set(flags_avx2 -mavx2)
+  # xsimd's avx512bw batches need the whole family; avx512dq alone is not pulled in by the others.
+  set(flags_avx512 -mavx512f -mavx512cd -mavx512dq -mavx512bw)
+
+  foreach(isa IN LISTS portable wide)
+    add_library(fastccd_${isa} OBJECT ${PROJECT_SOURCE_DIR}/simd/isa_kernels.cpp)
+    target_include_directories(fastccd_${isa} PRIVATE
+      ${PROJECT_SOURCE_DIR}/kernels/include ${PROJECT_SOURCE_DIR}/kernels ${PROJECT_SOURCE_DIR}/simd)
+    target_compile_definitions(fastccd_${isa} PRIVATE
+      FASTCCD_KERNEL_ISA=${isa} FASTCCD_KERNEL_NAMESPACE=${isa}_lanes)
+    if(DEFINED arch_${isa})
+      target_compile_definitions(fastccd_${isa} PRIVATE FASTCCD_KERNEL_ARCH=${arch_${isa}})
+      target_link_libraries(fastccd_${isa} PRIVATE xsimd)
+    endif()
+    # The kernels are optimised in every build type: without inlining they would be useless, and
+    # functions shared between instruction sets would be emitted.
+    target_compile_options(fastccd_${isa} PRIVATE -O2 ${flags_${isa}})
+    target_link_libraries(fastccd_${isa} PRIVATE fastccd_warnings fastccd_arithmetic)
+    if(isa STREQUAL avx512 AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+      # g++ 12 takes the deliberately undefined operand of its own AVX-512 intrinsics for a mistake (GCC bug 105593).
+      target_compile_options(fastccd_${isa} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)
+    endif()
+    set_target_properties(fastccd_${isa} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:fastccd_${isa}>)
+  endforeach()
+endfunction()
