@@ -25,7 +25,7 @@ FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const Sc
                                             const ErrorBounds& bounds)
 {
     // Squares first, one square root each: the six differences of the four points.
-    const auto largest_square = [](const Vector3<L>& a, const Vector3<L>& b, const Vector3<L>& c) {
+    const auto largest_square = [](const Vector3<L>& a, const Vector3<L>& b, const Vector3<L>& c) FASTCCD_INLINE_LAMBDA {
         const Vector3<L> ab = subtract(b, a), ac = subtract(c, a), bc = subtract(c, b);
         return max(max(dot(a, a), dot(b, b), dot(c, c)), max(dot(ab, ab), dot(ac, ac), dot(bc, bc)));
     };

@@ -85,13 +85,13 @@ template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const ErrorBounds& bounds,
                                               Extents<L>& extents)
 {
-    const auto along = [&](auto component) {
+    const auto along = [&](auto component) FASTCCD_INLINE_LAMBDA {
         return separated_along_axis<kind, L>({component(r.start[0]), component(r.start[1]), component(r.start[2])},
                                              {component(r.end[0]), component(r.end[1]), component(r.end[2])}, bounds);
     };
-    const auto x = along([](const Vector3<L>& v) { return v.x; });
-    const auto y = along([](const Vector3<L>& v) { return v.y; });
-    const auto z = along([](const Vector3<L>& v) { return v.z; });
+    const auto x = along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; });
+    const auto y = along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; });
+    const auto z = along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; });
     extents = {x.extent, y.extent, z.extent};
     return x.apart | y.apart | z.apart;
 }
@@ -139,42 +139,40 @@ FASTCCD_INLINE LaneMask<L> apart_in_projection(const SignRange<L>& p, const Sign
     }
 }
 
-/// The four vector-valued edge functions of a pair: p = r1 x r2, q = r2 x r3, and
-/// vertex-face: t = r3 x r1 (s unused); edge-edge: t = r1 x r3, s = (r3 - r2) x (r1 - r2) = (q - t) + p.
-template <class L>
-struct EdgeFunctions {
-    QuadraticVector<L> p, q, t, s;
-};
-
-template <PairKind kind, class L>
-FASTCCD_INLINE EdgeFunctions<L> edge_functions(const RelativeMotion<L>& r, const QuadraticVector<L>& p)
+/// Calls visit(p, q, t, s) with the four vector-valued edge functions of a pair: p = r1 x r2, q = r2 x r3, and
+/// vertex-face: t = r3 x r1, s unused; edge-edge: t = r1 x r3, s = (r3 - r2) x (r1 - r2) = (q - t) + p.
+/// By reference: compilers copy structures of wide registers through memory, in pieces.
+template <PairKind kind, class L, class Visit>
+FASTCCD_INLINE auto visit_edge_functions(const RelativeMotion<L>& r, Visit visit)
 {
-    const QuadraticVector<L> q = cross_product(r, 1, 2);
+    const QuadraticVector<L> p = cross_product(r, 0, 1), q = cross_product(r, 1, 2);
     if constexpr (kind == PairKind::vertex_face) {
         const QuadraticVector<L> t = cross_product(r, 2, 0);
-        return {p, q, t, t};
+        return visit(p, q, t, t);
     } else {
         const QuadraticVector<L> t = cross_product(r, 0, 2);
-        return {p, q, t, subtract_then_add(q, t, p)};
+        const QuadraticVector<L> s = subtract_then_add(q, t, p);
+        return visit(p, q, t, s);
     }
 }
 
 /// Apart in at least one coordinate projection over the whole interval (paper, eq. 9 and 10).
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> quadratic_certificate(const EdgeFunctions<L>& e, const Scales<L>& scale,
-                                                 const ErrorBounds& bounds)
+FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, const QuadraticVector<L>& q,
+                                                 const QuadraticVector<L>& t, const QuadraticVector<L>& s,
+                                                 const Scales<L>& scale, const ErrorBounds& bounds)
 {
-    const auto along = [&](auto component, L area) {
-        const auto range = [&](const QuadraticVector<L>& v) {
+    const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
+        const auto range = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
             return sign_range(component(v.start), component(v.twice_middle), component(v.end));
         };
-        return apart_in_projection<kind, L>(range(e.p), range(e.q), range(e.t), range(e.s),
+        return apart_in_projection<kind, L>(range(p), range(q), range(t), range(s),
                                             broadcast<L>(bounds.quadratic()) * area,
                                             broadcast<L>(bounds.quadratic_sum()) * area);
     };
-    return along([](const Vector3<L>& v) { return v.x; }, scale.yz) |
-           along([](const Vector3<L>& v) { return v.y; }, scale.zx) |
-           along([](const Vector3<L>& v) { return v.z; }, scale.xy);
+    return along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz) |
+           along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx) |
+           along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy);
 }
 
 /// True where the coordinates are finite and their differences within the lanes' range. Every

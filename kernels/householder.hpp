@@ -9,36 +9,53 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// A root of f is sought between low and high; `rising` where f is negative at low.
+/// Householder's next guess from s, with f(s) in `value`; any value, NaN included, far from a simple root.
 template <class L>
-struct Bracket {
-    L low, high;
-};
-
-/// One step from s. Updates the bracket with the sign of f(s), and returns the next guess: Householder's
-/// if it lies inside the bracket, the middle of the bracket otherwise.
-template <class L>
-FASTCCD_INLINE L householder_step(const PowerCubic<L>& f, LaneMask<L> rising, Bracket<L>& bracket, L s)
+FASTCCD_INLINE L householder_guess(const PowerCubic<L>& f, L s, L value)
 {
-    const L value = evaluate(f, s);
-    const L slope = ((broadcast<L>(3.0) * f.c3) * s + broadcast<L>(2.0) * f.c2) * s + f.c1;  // f'
-    const L half_curvature = (broadcast<L>(3.0) * f.c3) * s + f.c2;                          // f'' / 2
-
-    const LaneMask<L> negative = less(value, broadcast<L>(0.0));
-    const LaneMask<L> root_after = (negative & rising) | !(negative | rising);
-    bracket.low = select<L>(root_after, s, bracket.low);
-    bracket.high = select<L>(root_after, bracket.high, s);
-
+    const L three_c3 = broadcast<L>(3.0) * f.c3;
+    const L slope = (three_c3 * s + (f.c2 + f.c2)) * s + f.c1;  // f'
+    const L half_curvature = three_c3 * s + f.c2;              // f'' / 2
     // s - f (f'^2 - f f''/2) / (f'^3 - f f' f'' + f^2 f'''/6), with f''' / 6 = c3
     const L slope_squared = slope * slope;
     const L product = value * half_curvature;
     const L numerator = value * (slope_squared - product);
     const L denominator = slope * (slope_squared - (product + product)) + (value * value) * f.c3;
-    const L next = s - numerator / denominator;
+    return s - numerator / denominator;
+}
 
-    // Closed: a converged guess is an end of its bracket.
-    const LaneMask<L> inside = less_equal(bracket.low, next) & less_equal(next, bracket.high);
-    return select<L>(inside, next, (bracket.low + bracket.high) * broadcast<L>(0.5));
+/// A root of f is sought between low and high.
+template <class L>
+struct Bracket {
+    L low, high;
+};
+
+/// A few steps from s, each clipped to the bracket: close to most roots in the fewest instructions.
+template <class L>
+FASTCCD_INLINE L clipped_steps(const PowerCubic<L>& f, const Bracket<L>& bracket, L s, int steps)
+{
+    for (int step = 0; step < steps; ++step)
+        s = max(min(householder_guess(f, s, evaluate(f, s)), bracket.high), bracket.low);
+    return s;
+}
+
+/// Steps from s that close the bracket around the root of a monotone f by the sign of each value, and bisect
+/// where Householder's guess leaves it. `rising` where f is negative at the low end.
+template <class L>
+FASTCCD_INLINE L bracketed_steps(const PowerCubic<L>& f, LaneMask<L> rising, Bracket<L> bracket, L s, int steps)
+{
+    for (int step = 0; step < steps; ++step) {
+        const L value = evaluate(f, s);
+        const LaneMask<L> negative = less(value, broadcast<L>(0.0));
+        const LaneMask<L> root_after = (negative & rising) | !(negative | rising);
+        bracket.low = select<L>(root_after, s, bracket.low);
+        bracket.high = select<L>(root_after, bracket.high, s);
+        const L next = householder_guess(f, s, value);
+        // Closed: a converged guess is an end of its bracket.
+        const LaneMask<L> inside = less_equal(bracket.low, next) & less_equal(next, bracket.high);
+        s = select<L>(inside, next, (bracket.low + bracket.high) * broadcast<L>(0.5));
+    }
+    return s;
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -15,19 +15,22 @@ namespace fastccd {
 /// tile with its scratch stays within half of a 512 KiB L2 cache. A multiple of block_pairs.
 inline constexpr std::size_t tile_pairs = 1024;
 
-/// A queue of candidate roots between two stages, structure of arrays.
-struct RootQueue {
-    /// r1..r3 at both ends (18), f (4), threshold, piece (2), guess, products of extents (4), pair.
-    static constexpr unsigned fields = 31;
-    /// A stage drains the queue when it holds this many roots; a batch adds at most 3 per lane ...
+/// A queue of pairs or roots between two stages, structure of arrays: one row per field.
+template <unsigned field_count>
+struct LaneQueue {
+    static constexpr unsigned fields = field_count;
+    /// A stage drains the queue when it holds this many entries; one batch adds at most 2 per lane ...
     static constexpr unsigned drain_at = 64;
-    static constexpr unsigned most_added = 3 * 8;
-    /// ... and storing the last ones writes a full batch.
+    static constexpr unsigned most_added = 2 * 8;
+    /// ... and storing the last ones, or reading them, touches a full batch.
     static constexpr unsigned capacity = drain_at + most_added + 8;
 
     alignas(64) double data[fields][capacity];
     unsigned size;
 };
+/// Fields: see PairRecord in simd/records.hpp.
+using PairQueue = LaneQueue<27>;
+using RootQueue = LaneQueue<31>;
 
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {
@@ -36,8 +39,9 @@ struct TileScratch {
     std::uint8_t is_undecided[tile_pairs];
     std::uint16_t undecided[tile_pairs];       ///< Pairs of the tile left to the certified search, in any order.
     unsigned undecided_count;
-    RootQueue candidates;  ///< Pieces with a sign change, before refinement.
-    RootQueue survivors;   ///< Roots not dismissed on a coarse bracket.
+    PairQueue screened;      ///< Pairs without a linear or cubic certificate.
+    RootQueue later_pieces;  ///< Second and third pieces with a sign change.
+    RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.
     alignas(64) double block[block_coordinates];  ///< A block in the native layout, where the input is not.
 };
 

@@ -15,6 +15,7 @@
 #endif
 
 #define FASTCCD_INLINE inline __attribute__((always_inline))
+#define FASTCCD_INLINE_LAMBDA __attribute__((always_inline))
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 

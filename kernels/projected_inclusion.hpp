@@ -35,7 +35,7 @@ FASTCCD_INLINE Inclusion<L> projected_inclusion(const RelativeMotion<L>& r, cons
     const L per_area = change + broadcast<L>(bounds.edge_function());
     const L per_area_sum = broadcast<L>(3.0) * change + broadcast<L>(bounds.edge_function_sum());
 
-    const auto along = [&](L pk, L qk, L tk, L sk, L area) -> Inclusion<L> {
+    const auto along = [&](L pk, L qk, L tk, L sk, L area) FASTCCD_INLINE_LAMBDA -> Inclusion<L> {
         const L bound = per_area * area, bound_sum = per_area_sum * area;
         const LaneMask<L> absent = apart_in_projection<kind, L>({pk, pk}, {qk, qk}, {tk, tk}, {sk, sk}, bound, bound_sum);
         if constexpr (kind == PairKind::vertex_face) {

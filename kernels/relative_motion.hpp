@@ -37,19 +37,17 @@ FASTCCD_INLINE Vector3<L> position(const RelativeMotion<L>& r, int i, L s)
 template <class L>
 FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int stride, double t_max)
 {
-    const auto at = [=](int end, int point, int axis) {
+    const auto at = [=](int end, int point, int axis) FASTCCD_INLINE_LAMBDA {
         return Lane<L>::load(coordinates + (12 * end + 3 * point + axis) * stride);
     };
-    const auto relative = [&](int end, int i) {
+    const auto relative = [&](int end, int i) FASTCCD_INLINE_LAMBDA {
         return Vector3<L>{at(end, i, 0) - at(end, 0, 0), at(end, i, 1) - at(end, 0, 1), at(end, i, 2) - at(end, 0, 2)};
     };
-    RelativeMotion<L> r;
-    for (int i = 0; i < 3; ++i) {
-        r.start[i] = relative(0, i + 1);
-        r.end[i] = relative(1, i + 1);
+    RelativeMotion<L> r{{relative(0, 1), relative(0, 2), relative(0, 3)}, {relative(1, 1), relative(1, 2), relative(1, 3)}};
+    if (t_max != 1.0) {
+        const L end = broadcast<L>(t_max);
+        r = {{r.start[0], r.start[1], r.start[2]}, {position(r, 0, end), position(r, 1, end), position(r, 2, end)}};
     }
-    if (t_max != 1.0)
-        for (int i = 0; i < 3; ++i) r.end[i] = position(r, i, broadcast<L>(t_max));
     return r;
 }
 

@@ -25,16 +25,16 @@ public:
     {
         const LaneMask<double> separated = linear_certificate<kind>(r, bounds, extents);
         scale = scales(extents);
-        const QuadraticVector<double> p = cross_product(r, 0, 1);
-        const CoplanarityCubic<double> f = coplanarity_cubic(r, p);
-        const EdgeFunctions<double> e = edge_functions<kind>(r, p);
+        const CoplanarityCubic<double> f = coplanarity_cubic(r, cross_product(r, 0, 1));
         cubic = bernstein(f);
-        apart_throughout = (separated | cubic_certificate(f, scale.volume, bounds) |
-                            quadratic_certificate<kind>(e, scale, bounds)).value;
-        split(e.p, edges[0]);
-        split(e.q, edges[1]);
-        split(e.t, edges[2]);
-        split(e.s, edges[3]);
+        visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
+            apart_throughout = (separated | cubic_certificate(f, scale.volume, bounds) |
+                                quadratic_certificate<kind>(p, q, t, s, scale, bounds)).value;
+            split(p, edges[0]);
+            split(q, edges[1]);
+            split(t, edges[2]);
+            split(s, edges[3]);
+        });
     }
 
     /// The certificates on [0, 1], as the lanes compute them.

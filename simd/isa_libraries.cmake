@@ -29,7 +29,7 @@ function(fastccd_add_isa_kernels target)
     endif()
     # The kernels are optimised in every build type: without inlining they would be useless, and
     # functions shared between instruction sets would be emitted.
-    target_compile_options(fastccd_${isa} PRIVATE -O2 ${flags_${isa}})
+    target_compile_options(fastccd_${isa} PRIVATE -O3 ${flags_${isa}})
     target_link_libraries(fastccd_${isa} PRIVATE fastccd_warnings fastccd_arithmetic)
     if(isa STREQUAL avx512 AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
       # g++ 12 takes the deliberately undefined operand of its own AVX-512 intrinsics for a mistake (GCC bug 105593).

@@ -1,9 +1,14 @@
 // The stages of the narrow phase over one tile:
 //
-//     block -> certificates -> sign-change intervals -> [candidates] -> Householder, coarse inclusion
-//                 | drops most      | undecided                             | dismisses most
-//                 v                 v                                       v
-//               apart         certified search   <- undecided -  [survivors] -> refinement, inclusion -> contact
+//     block -> length, volume certificates -> [screened] -> area certificate, sign-change intervals,
+//                     |                                       first Householder steps, coarse inclusion
+//                     v                                           |             |               |
+//                   apart                              [later_pieces] again   apart         [survivors]
+//                                                                                                 |
+//          certified search  <- undecided, here and above -  refinement, leaf, inclusion <--------+
+//                                                                  |
+//                                                                  v
+//                                                           contact or apart
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
@@ -18,7 +23,7 @@
 #include <block_source.hpp>
 #include <householder.hpp>
 #include <projected_inclusion.hpp>
-#include <root_record.hpp>
+#include <records.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -33,11 +38,12 @@ public:
             const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
             const double* block = native_block(*request.pairs, request.first + i, count, scratch.block);
             for (unsigned lane = 0; lane < count; lane += width) {
-                pipeline.filter(block + lane, static_cast<double>(i + lane), static_cast<double>(request.count));
-                if (scratch.candidates.size >= RootQueue::drain_at) pipeline.reject_coarsely(false);
+                pipeline.screen(block + lane, static_cast<double>(i + lane), static_cast<double>(request.count));
+                if (scratch.screened.size >= PairQueue::drain_at) pipeline.find_roots(false);
             }
         }
-        pipeline.reject_coarsely(true);
+        pipeline.find_roots(true);
+        pipeline.reject_later_pieces(true);
         pipeline.refine(true);
     }
 
@@ -51,7 +57,7 @@ private:
     static constexpr double coarse_bracket = 0x1p-8;
     static constexpr double fine_bracket = 0x1p-16;
     static constexpr int coarse_steps = 2;
-    static constexpr int fine_steps = 4;
+    static constexpr int fine_steps = 3;
 
     const SearchParameters& parameters;
     TileScratch& scratch;
@@ -63,7 +69,7 @@ private:
         for (std::size_t i = 0; i < count; ++i) scratch.parameter[i] = __builtin_inf();
         for (std::size_t i = 0; i < count; ++i) scratch.roots[i] = scratch.is_undecided[i] = 0;
         scratch.undecided_count = 0;
-        scratch.candidates.size = scratch.survivors.size = 0;
+        scratch.screened.size = scratch.later_pieces.size = scratch.survivors.size = 0;
     }
 
     FASTCCD_INLINE void leave_undecided(unsigned pair)
@@ -73,48 +79,97 @@ private:
         scratch.undecided[scratch.undecided_count++] = static_cast<std::uint16_t>(pair);
     }
 
-    /// Certificates on the whole interval, then the pieces in which the cubic changes sign.
-    FASTCCD_INLINE void filter(const double* coordinates, double first, double count)
+    FASTCCD_INLINE void leave_undecided(L pair, unsigned lanes)
     {
-        const RelativeMotion<L> r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
+        alignas(64) double pairs[width];
+        Lane<L>::store(pairs, pair);
+        for (; lanes != 0; lanes &= lanes - 1) leave_undecided(static_cast<unsigned>(pairs[__builtin_ctz(lanes)]));
+    }
+
+    /// Length and volume certificates on the whole interval. Most lanes end here; the others are packed, so that
+    /// the costlier area certificate runs on full batches.
+    FASTCCD_INLINE void screen(const double* coordinates, double first, double count)
+    {
+        PairRecord<L> record;
+        record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
         Extents<L> extents;
-        const LaneMask<L> separated = linear_certificate<kind>(r, parameters.bounds, extents);
-        const Scales<L> scale = scales(extents);
-        const QuadraticVector<L> p = cross_product(r, 0, 1);
-        const CoplanarityCubic<L> cubic = coplanarity_cubic(r, p);
+        const LaneMask<L> separated = linear_certificate<kind>(record.r, parameters.bounds, extents);
+        record.scale = scales(extents);
+        record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
+        record.pair = broadcast<L>(first) + Lane<L>::lane_number();
 
-        const L pair = broadcast<L>(first) + Lane<L>::lane_number();
-        const LaneMask<L> in_range = in_lane_range(cubic, extents);
-        const LaneMask<L> exists = less(pair, broadcast<L>(count));
-        LaneMask<L> apart = separated | cubic_certificate(cubic, scale.volume, parameters.bounds);
-        if (Lane<L>::bits(exists & !(apart & in_range)) == 0) return;
-
-        apart = apart | quadratic_certificate<kind>(edge_functions<kind>(r, p), scale, parameters.bounds);
-        const LaneMask<L> alive = exists & !(apart & in_range);
-        const unsigned alive_bits = Lane<L>::bits(alive);
-        if (alive_bits == 0) return;
-
-        const MonotonePieces<L> pieces =
-            monotone_pieces(bernstein(cubic), scale.volume, parameters.bounds, parameters.leaf_width);
-        const LaneMask<L> certain = pieces.certain & in_range & less(broadcast<L>(smallest_volume), scale.volume);
-        for (unsigned bits = alive_bits & ~Lane<L>::bits(certain); bits != 0; bits &= bits - 1)
+        const LaneMask<L> exists = less(record.pair, broadcast<L>(count));
+        const LaneMask<L> in_range = in_lane_range(record.cubic, extents);
+        const LaneMask<L> apart = separated | cubic_certificate(record.cubic, record.scale.volume, parameters.bounds);
+        const unsigned decidable = Lane<L>::bits(exists & in_range);
+        for (unsigned bits = Lane<L>::bits(exists) & ~decidable; bits != 0; bits &= bits - 1)
             leave_undecided(static_cast<unsigned>(first) + static_cast<unsigned>(__builtin_ctz(bits)));
+        const unsigned kept = decidable & ~Lane<L>::bits(apart);
+        if (kept != 0) push(scratch.screened, kept, record);
+    }
 
-        RootRecord<L> record;
-        record.r = r;
+    /// Takes full batches from the front of a queue, and the rest too if `all`.
+    template <class Queue, class Stage>
+    FASTCCD_INLINE static void drain(Queue& queue, bool all, Stage stage)
+    {
+        PairRecord<L> record;
+        unsigned done = 0;
+        for (; done < queue.size && (all || queue.size - done >= width); done += width) {
+            const unsigned left = queue.size - done;
+            read(queue, done, record);
+            stage(record, left >= width ? (1u << width) - 1 : (1u << left) - 1);
+        }
+        drop_front(queue, done);
+    }
+
+    /// Area certificate; then the pieces in which the cubic changes sign, of which the first is pursued at once.
+    void find_roots(bool all)
+    {
+        drain(scratch.screened, all, [&](PairRecord<L>& record, unsigned lanes) FASTCCD_INLINE_LAMBDA {
+            const auto apart = visit_edge_functions<kind>(
+                record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                    return quadratic_certificate<kind>(p, q, t, s, record.scale, parameters.bounds);
+                });
+            lanes &= ~Lane<L>::bits(apart);
+            if (lanes != 0) find_roots(record, lanes);
+        });
+    }
+
+    FASTCCD_INLINE void find_roots(PairRecord<L>& record, unsigned lanes)
+    {
+        const MonotonePieces<L> pieces =
+            monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds, parameters.leaf_width);
         record.f = pieces.f;
         record.threshold = pieces.threshold;
-        record.scale = scale;
-        record.pair = pair;
-        for (int i = 0; i < 3; ++i) {
-            const LaneMask<L> changes = opposite_signs(pieces.value[i], pieces.value[i + 1]);
-            const unsigned bits = Lane<L>::bits(alive & certain & changes);
-            if (bits == 0) continue;
-            record.low = pieces.time[i];
-            record.high = pieces.time[i + 1];
-            record.guess = (record.low + record.high) * broadcast<L>(0.5);
-            push(scratch.candidates, bits, record);
+        const unsigned certain =
+            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), record.scale.volume));
+        if (certain != lanes) leave_undecided(record.pair, lanes & ~certain);
+
+        const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
+        const LaneMask<L> in_second = opposite_signs(pieces.value[1], pieces.value[2]);
+        const LaneMask<L> in_third = opposite_signs(pieces.value[2], pieces.value[3]);
+        const auto set_piece = [&](L low, L high) FASTCCD_INLINE_LAMBDA {
+            record.low = low;
+            record.high = high;
+            record.guess = (low + high) * broadcast<L>(0.5);
+        };
+        // A second root lies in the second piece (after one in the first) or in the third; a third one is rare.
+        const LaneMask<L> first_two = in_first & in_second;
+        if (const unsigned again = certain & Lane<L>::bits(first_two | (in_third & (in_first | in_second))); again != 0) {
+            set_piece(select<L>(first_two, pieces.time[1], pieces.time[2]),
+                      select<L>(first_two, pieces.time[2], pieces.time[3]));
+            push(scratch.later_pieces, again, record);
         }
+        if (const unsigned again = certain & Lane<L>::bits(first_two & in_third); again != 0) {
+            set_piece(pieces.time[2], pieces.time[3]);
+            push(scratch.later_pieces, again, record);
+        }
+        if (const unsigned found = certain & Lane<L>::bits(in_first | in_second | in_third); found != 0) {
+            set_piece(select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2])),
+                      select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3])));
+            reject_coarsely(record, found);
+        }
+        if (scratch.later_pieces.size >= RootQueue::drain_at) reject_later_pieces(false);
     }
 
     /// The sides of a bracket of half width delta around the guess, within the piece, when f certainly
@@ -123,7 +178,7 @@ private:
         L low, high;
         LaneMask<L> certain;
     };
-    FASTCCD_INLINE static RootBracket bracket_root(const RootRecord<L>& root, L delta)
+    FASTCCD_INLINE static RootBracket bracket_root(const PairRecord<L>& root, L delta)
     {
         const L low = max(root.guess - delta, root.low);
         const L high = min(root.guess + delta, root.high);
@@ -132,52 +187,39 @@ private:
         return {low, high, beyond & opposite_signs(at_low, at_high)};
     }
 
-    FASTCCD_INLINE static void iterate(RootRecord<L>& root, int steps)
+    void reject_later_pieces(bool all)
     {
-        const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
-        Bracket<L> bracket{root.low, root.high};
-        for (int step = 0; step < steps; ++step) root.guess = householder_step(root.f, rising, bracket, root.guess);
+        drain(scratch.later_pieces, all, [&](PairRecord<L>& root, unsigned lanes) FASTCCD_INLINE_LAMBDA {
+            reject_coarsely(root, lanes);
+        });
     }
 
-    FASTCCD_INLINE static unsigned bits_below(unsigned n) { return n >= width ? (1u << width) - 1 : (1u << n) - 1; }
-
-    /// Candidates -> survivors. Takes full batches, and the rest too if `all`.
-    FASTCCD_INLINE void reject_coarsely(bool all)
+    /// Two steps towards the root; dismisses lanes without inclusion anywhere near it.
+    FASTCCD_INLINE void reject_coarsely(PairRecord<L>& root, unsigned lanes)
     {
-        RootQueue& queue = scratch.candidates;
-        unsigned done = 0;
-        while (done < queue.size && (all || queue.size - done >= width)) {
-            RootRecord<L> root = read<L>(queue, done);
-            iterate(root, coarse_steps);
-            const L delta = broadcast<L>(coarse_bracket);
-            const RootBracket bracket = bracket_root(root, delta);
-            // One leaf more on either side: the margin of the certified search.
-            const Inclusion<L> inclusion =
-                projected_inclusion<kind>(root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width),
-                                          parameters.bounds);
-            const unsigned kept = bits_below(queue.size - done) & ~Lane<L>::bits(bracket.certain & inclusion.absent);
-            if (kept != 0) push(scratch.survivors, kept, root);
-            if (scratch.survivors.size >= RootQueue::drain_at) refine(false);
-            done += width;
-        }
-        drop_front(queue, done < queue.size ? done : queue.size);
+        root.guess = clipped_steps<L>(root.f, {root.low, root.high}, root.guess, coarse_steps);
+        const L delta = broadcast<L>(coarse_bracket);
+        const RootBracket bracket = bracket_root(root, delta);
+        // One leaf more on either side: the margin of the certified search.
+        const Inclusion<L> inclusion = projected_inclusion<kind>(
+            root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width), parameters.bounds);
+        const unsigned kept = lanes & ~Lane<L>::bits(bracket.certain & inclusion.absent);
+        if (kept == 0) return;
+        push(scratch.survivors, kept, root);
+        if (scratch.survivors.size >= RootQueue::drain_at) refine(false);
+    }
+
+    void refine(bool all)
+    {
+        drain(scratch.survivors, all, [&](PairRecord<L>& root, unsigned lanes) FASTCCD_INLINE_LAMBDA {
+            const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
+            root.guess = bracketed_steps<L>(root.f, rising, {root.low, root.high}, root.guess, fine_steps);
+            decide(root, lanes);
+        });
     }
 
     /// The leaf that holds the refined root, proofs on both sides of it, and inclusion within it.
-    FASTCCD_INLINE void refine(bool all)
-    {
-        RootQueue& queue = scratch.survivors;
-        unsigned done = 0;
-        while (done < queue.size && (all || queue.size - done >= width)) {
-            RootRecord<L> root = read<L>(queue, done);
-            iterate(root, fine_steps);
-            decide(root, bits_below(queue.size - done));
-            done += width;
-        }
-        drop_front(queue, done < queue.size ? done : queue.size);
-    }
-
-    FASTCCD_INLINE void decide(const RootRecord<L>& root, unsigned lanes)
+    FASTCCD_INLINE void decide(const PairRecord<L>& root, unsigned lanes)
     {
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
         const L w = broadcast<L>(parameters.leaf_width);
@@ -213,10 +255,11 @@ private:
         unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
         if ((undecided & crossing) != 0)
             undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, centre, half, parameters.bounds)));
-        if ((contact | undecided) != 0) record_results(root.pair, left, contact, undecided);
+        if (contact != 0) record_contacts(root.pair, left, contact);
+        if (undecided != 0) leave_undecided(root.pair, undecided);
     }
 
-    FASTCCD_INLINE void record_results(L pair, L left, unsigned contact, unsigned undecided)
+    FASTCCD_INLINE void record_contacts(L pair, L left, unsigned contact)
     {
         alignas(64) double pairs[width], lefts[width];
         Lane<L>::store(pairs, pair);
@@ -227,8 +270,6 @@ private:
             if (lefts[lane] < scratch.parameter[i]) scratch.parameter[i] = lefts[lane];
             ++scratch.roots[i];
         }
-        for (unsigned bits = undecided; bits != 0; bits &= bits - 1)
-            leave_undecided(static_cast<unsigned>(pairs[__builtin_ctz(bits)]));
     }
 };
 
