@@ -60,9 +60,8 @@ struct ErrorBounds {
 
     /// Blossom levels of the cubic: 3 levels, |f_k| <= 6 V.
     static constexpr double cubic_blossom_levels = 54.0;
-    /// Blossom levels of a cross product: 2 levels, size 2 Y Z; and of the sum of three.
+    /// Blossom levels of a cross product: 2 levels, size 2 Y Z.
     static constexpr double quadratic_blossom_levels = 12.0;
-    static constexpr double quadratic_sum_blossom_levels = 36.0;
 
     /// Bernstein coefficients of f on [a, b]; times V. f1 is (54 rho + 114) / 3 and the
     /// multiplication by the rounded 1/3 (2 u of 6 V): 18 rho + 38 + 12, then the blossom.
@@ -74,11 +73,6 @@ struct ErrorBounds {
     [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_on_interval() const
     {
         return (4 * rho + 6 + quadratic_blossom_levels + slack) * u;
-    }
-    /// Times Y Z: (24 rho + 56) / 2, then the blossom.
-    [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_sum_on_interval() const
-    {
-        return (12 * rho + 28 + quadratic_sum_blossom_levels + slack) * u;
     }
     /// Difference of two coordinates at a time; times X: each errs by rho + 3, and the difference by 2.
     [[nodiscard]] FASTCCD_INLINE constexpr double linear_on_interval() const { return (2 * rho + 8 + slack) * u; }
@@ -105,10 +99,11 @@ struct ErrorBounds {
     {
         return (4 * rho + 16 + 2 * (4 * rho + 18 + slack) + slack) * u;
     }
-    /// (q - t) + p of three such; sums of size 4 and 6. Margin as above: + 2 (12 rho + 64 + slack).
+    /// (q - t) + p of three such; sums of size 4 and 6. The certified search has a cross product of vectors
+    /// relative to x1 instead, whose extents are at most twice as large: margin + 2 * 4 (4 rho + 18 + slack).
     [[nodiscard]] FASTCCD_INLINE constexpr double edge_function_sum() const
     {
-        return (12 * rho + 58 + 2 * (12 * rho + 64 + slack) + slack) * u;
+        return (12 * rho + 58 + 8 * (4 * rho + 18 + slack) + slack) * u;
     }
 
     // ---- Monotone pieces (sign_change.hpp) --------------------------------------------------------

@@ -11,7 +11,6 @@
 
 #include <contact_roots.hpp>
 #include <pair_polynomials.hpp>
-#include <scaling.hpp>
 
 namespace fastccd::scalar {
 
@@ -27,7 +26,7 @@ bool finite(const double* coordinates)
 template <PairKind kind>
 SearchResult search(const double* coordinates, const SearchParameters& parameters)
 {
-    const PairPolynomials<kind> pair{scaled_relative_motion(coordinates, parameters.t_max), parameters.bounds};
+    const PairPolynomials<kind> pair{coordinates, parameters};
     SearchResult result{std::numeric_limits<double>::infinity(), 0, 1};
     if (pair.apart()) return result;
 

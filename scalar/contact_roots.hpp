@@ -29,23 +29,26 @@ public:
         for (unsigned intervals = 0; !stack.empty(); ++intervals) {
             if (intervals == most_intervals) return 0;
             const Interval i = stack.pop();
-            if (i.b - i.a < 1.0 && pair.apart(i)) {
-                close_cluster();
-                continue;
-            }
             const Cubic<double> f = pair.coplanarity(i);
-            if (one_variation(f) && pair.included(i)) {
-                close_cluster();
-                roots = static_cast<std::uint8_t>(std::min(roots + 1, 255));
-            } else if (i.b - i.a > parameters.leaf_width && !(flat(f) && i.b - i.a <= widest_flat)) {
+            const double width = i.b - i.a;
+            if (width < 1.0 && pair.apart(i)) {
+                see_sign(f.c0);
+            } else if (one_variation(f) && pair.included(i)) {
+                see_sign(f.c0);
+                add_roots(1);
+            } else if (width > parameters.leaf_width && !(flat(f) && width <= widest_flat)) {
                 stack.push_halves(i);
-            } else if (i.b - i.a <= parameters.leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
-                close_cluster();
-            } else {
-                extend_cluster(f);
+                continue;
+            } else if (width <= parameters.leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
+                see_sign(f.c0);
+            } else if (!open) {
+                open = true;
+                if (sign(f.c0) != 0) last_sign = sign(f.c0);
+                before = last_sign;
             }
+            see_sign(f.c3);
         }
-        close_cluster();
+        if (open) close_cluster(0);
         return countable ? roots : std::uint8_t{0};
     }
 
@@ -71,20 +74,22 @@ private:
         return sign(smallest(f)) == 0 && sign(largest(f)) == 0;
     }
 
-    void extend_cluster(const Cubic<double>& f)
+    void add_roots(int more) { roots = static_cast<std::uint8_t>(std::min(roots + more, 255)); }
+
+    /// Takes note of the cubic's value at the next time in order; a certain sign ends an open cluster. Until then,
+    /// whatever else is found lies at the same multiple root.
+    void see_sign(double value)
     {
-        if (!open) before = sign(f.c0);
-        open = true;
-        after = sign(f.c3);
+        if (sign(value) == 0) return;
+        last_sign = sign(value);
+        if (open) close_cluster(last_sign);
     }
 
-    void close_cluster()
+    void close_cluster(int after)
     {
-        if (!open) return;
         open = false;
         if (before == 0 && after == 0) countable = false;
-        const int more = before != 0 && before == after ? 2 : 1;
-        roots = static_cast<std::uint8_t>(std::min(roots + more, 255));
+        add_roots(before != 0 && before == after ? 2 : 1);
     }
 
     const PairPolynomials<kind>& pair;
@@ -92,7 +97,8 @@ private:
     LeafSearch<kind> leaves;
     bool open = false;
     bool countable = true;
-    int before = 0, after = 0;
+    int before = 0;     ///< Sign of the cubic before the open cluster; 0 if not certain.
+    int last_sign = 0;  ///< Its last certain sign.
     std::uint8_t roots = 0;
 };
 

@@ -83,7 +83,7 @@ private:
     static constexpr unsigned most_intervals_in_leaf = 512;
     /// Parts of a leaf are halved to this width relative to their time, where a time still has a few
     /// digits to spare, or, next to time 0, to this absolute one.
-    static constexpr double finest_relative = 0x1p-50;
+    static constexpr double finest_relative = 0x1p-52;
     static constexpr double finest_at_zero = 0x1p-100;
 
     bool exhausted() { return intervals_++ >= most_intervals; }

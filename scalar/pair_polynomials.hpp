@@ -6,6 +6,8 @@
 #include <area_inclusion.hpp>
 #include <bernstein.hpp>
 #include <certificates.hpp>
+#include <magnitudes.hpp>
+#include <scaling.hpp>
 #include <search_parameters.hpp>
 
 namespace fastccd::scalar {
@@ -20,21 +22,30 @@ struct Interval {
 template <PairKind kind>
 class PairPolynomials {
 public:
-    PairPolynomials(const RelativeMotion<double>& motion, const ErrorBounds& error_bounds)
-        : r{motion}, bounds{error_bounds}
+    /// `coordinates`: 24 finite ones, in the order of PairView.
+    PairPolynomials(const double* coordinates, const SearchParameters& parameters)
+        : r{scaled_relative_motion(coordinates, parameters.t_max)}, bounds{parameters.bounds}
     {
         const LaneMask<double> separated = linear_certificate<kind>(r, bounds, extents);
         scale = scales(extents);
         const CoplanarityCubic<double> f = coplanarity_cubic(r, cross_product(r, 0, 1));
         cubic = bernstein(f);
+        coplanarity_bound = scalar::cubic_bound(r, bounds.cubic_on_interval() * scale.volume, bounds);
         visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
             apart_throughout = (separated | cubic_certificate(f, scale.volume, bounds) |
                                 quadratic_certificate<kind>(p, q, t, s, scale, bounds)).value;
-            split(p, edges[0]);
-            split(q, edges[1]);
-            split(t, edges[2]);
-            split(s, edges[3]);
+            set_edge(0, p, cross_product_magnitude(r, 0, 1), scale);
+            set_edge(1, q, cross_product_magnitude(r, 1, 2), scale);
+            set_edge(2, t, cross_product_magnitude(r, 2, 0), scale);
         });
+        if constexpr (kind == PairKind::edge_edge) {
+            // s = (r3 - r2) x (r1 - r2) is (x2 - x1) x (x3 - x1): from differences to x1 it has a third of the
+            // rounding of the sum that the lanes form.
+            const RelativeMotion<double> from_x1 = scaled_relative_motion(coordinates, parameters.t_max, 1);
+            Extents<double> extents_from_x1;
+            linear_certificate<kind>(from_x1, bounds, extents_from_x1);
+            set_edge(3, cross_product(from_x1, 1, 2), cross_product_magnitude(from_x1, 1, 2), scales(extents_from_x1));
+        }
     }
 
     /// The certificates on [0, 1], as the lanes compute them.
@@ -55,60 +66,65 @@ public:
 
     /// Bernstein coefficients of the coplanarity cubic on the interval, each within cubic_bound().
     [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return on_interval(cubic, i.a, i.b); }
-    [[nodiscard]] double cubic_bound() const { return bounds.cubic_on_interval() * scale.volume; }
+    [[nodiscard]] double cubic_bound() const { return coplanarity_bound; }
 
     /// True if every coplanar time of the interval is a contact: proper inclusion in some projection.
     [[nodiscard]] bool included(Interval i) const
     {
         for (int axis = 0; axis < 3; ++axis) {
-            const double bound = bounds.quadratic_on_interval() * area(axis);
-            const auto p = sign(edges[0][axis], i, bound), q = sign(edges[1][axis], i, bound),
-                       t = sign(edges[2][axis], i, bound);
+            const int p = sign(edges[0][axis], i), q = sign(edges[1][axis], i), t = sign(edges[2][axis], i);
             if constexpr (kind == PairKind::vertex_face) {
                 if (p != 0 && p == q && q == t) return true;
             } else {
-                const auto s = sign(edges[3][axis], i, bounds.quadratic_sum_on_interval() * area(axis));
-                if (p * t == -1 && q * s == -1) return true;
+                if (p * t == -1 && q * sign(edges[3][axis], i) == -1) return true;
             }
         }
         return false;
     }
 
 private:
-    static void split(const QuadraticVector<double>& v, Quadratic<double> (&by_axis)[3])
+    /// One component of an edge function and the bound of its coefficients on any interval.
+    struct EdgeFunction {
+        Quadratic<double> coefficients;
+        double bound;
+    };
+
+    void set_edge(int edge, const QuadraticVector<double>& v, const QuadraticVector<double>& m, const Scales<double>& s)
     {
-        by_axis[0] = {v.start.x, 0.5 * v.twice_middle.x, v.end.x};
-        by_axis[1] = {v.start.y, 0.5 * v.twice_middle.y, v.end.y};
-        by_axis[2] = {v.start.z, 0.5 * v.twice_middle.z, v.end.z};
+        const auto component = [&](double start, double twice_middle, double end, double m0, double m1, double m2,
+                                   double area) -> EdgeFunction {
+            return {{start, 0.5 * twice_middle, end},
+                    quadratic_bound(m0, m1, m2, bounds.quadratic_on_interval() * area, bounds)};
+        };
+        edges[edge][0] = component(v.start.x, v.twice_middle.x, v.end.x, m.start.x, m.twice_middle.x, m.end.x, s.yz);
+        edges[edge][1] = component(v.start.y, v.twice_middle.y, v.end.y, m.start.y, m.twice_middle.y, m.end.y, s.zx);
+        edges[edge][2] = component(v.start.z, v.twice_middle.z, v.end.z, m.start.z, m.twice_middle.z, m.end.z, s.xy);
     }
 
     /// Strict sign throughout the interval; 0 if there is none beyond the bound.
-    static int sign(const Quadratic<double>& q, Interval i, double bound)
+    static int sign(const EdgeFunction& e, Interval i)
     {
-        const Quadratic<double> c = on_interval(q, i.a, i.b);
-        return smallest(c) > bound ? 1 : largest(c) < -bound ? -1 : 0;
+        const Quadratic<double> c = on_interval(e.coefficients, i.a, i.b);
+        return smallest(c) > e.bound ? 1 : largest(c) < -e.bound ? -1 : 0;
     }
-
-    [[nodiscard]] double area(int axis) const { return axis == 0 ? scale.yz : axis == 1 ? scale.zx : scale.xy; }
 
     [[nodiscard]] bool never_coplanar(const Cubic<double>& f) const
     {
         return smallest(f) > cubic_bound() || largest(f) < -cubic_bound();
     }
 
+    /// The strict signs decide as in apart_in_projection.
     [[nodiscard]] bool apart_in_some_projection(Interval i) const
     {
         for (int axis = 0; axis < 3; ++axis) {
-            const auto range = [&](const Quadratic<double>& q) -> SignRange<double> {
-                const Quadratic<double> c = on_interval(q, i.a, i.b);
-                return {smallest(c), largest(c)};
-            };
-            const SignRange<double> t = range(edges[2][axis]);
-            const SignRange<double> s = kind == PairKind::edge_edge ? range(edges[3][axis]) : t;
-            if (apart_in_projection<kind>(range(edges[0][axis]), range(edges[1][axis]), t, s,
-                                          bounds.quadratic_on_interval() * area(axis),
-                                          bounds.quadratic_sum_on_interval() * area(axis)).value)
-                return true;
+            const int p = sign(edges[0][axis], i), t = sign(edges[2][axis], i);
+            if constexpr (kind == PairKind::vertex_face) {
+                const int q = sign(edges[1][axis], i);
+                if (p * q == -1 || q * t == -1 || t * p == -1) return true;
+            } else {
+                if (p * t == 1) return true;
+                if (const int q = sign(edges[1][axis], i); q != 0 && q == sign(edges[3][axis], i)) return true;
+            }
         }
         return false;
     }
@@ -136,7 +152,8 @@ private:
     Extents<double> extents;
     Scales<double> scale;
     Cubic<double> cubic;
-    Quadratic<double> edges[4][3];  ///< p, q, t, s of EdgeFunctions per axis.
+    double coplanarity_bound;
+    EdgeFunction edges[4][3];  ///< p, q, t, s of visit_edge_functions per axis; s for edge-edge alone.
     bool apart_throughout;
 };
 

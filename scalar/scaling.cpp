@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fastccd::scalar {
 
@@ -38,12 +39,14 @@ void scale_axis(double (&x)[8])
 
 }  // namespace
 
-RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max)
+RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin)
 {
     double scaled[24];
     for (int axis = 0; axis < 3; ++axis) {
         double x[8];
         for (int k = 0; k < 8; ++k) x[k] = coordinates[3 * k + axis];
+        std::swap(x[0], x[origin]);
+        std::swap(x[4], x[4 + origin]);
         scale_axis(x);
         for (int k = 0; k < 8; ++k) scaled[3 * k + axis] = x[k];
     }

@@ -11,7 +11,8 @@ namespace fastccd::scalar {
 
 using namespace FASTCCD_KERNEL_NAMESPACE;
 
-/// Relative motion of a pair of finite coordinates (24, in the order of PairView), its axes scaled where needed.
-RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max);
+/// Motion of a pair of finite coordinates (24, in the order of PairView) relative to point `origin`, which is
+/// exchanged with x0; axes scaled where needed.
+RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin = 0);
 
 }  // namespace fastccd::scalar

@@ -1,0 +1,58 @@
+// Error bounds from the magnitudes of the products themselves, tighter than those from extents.
+//
+// A sum of products errs relative to the sum of the absolute values of its terms. The lanes bound every
+// term by the extents; the certified search, which has the last word, adds the terms up: the same formulas as
+// in coplanarity.hpp, of absolute values and with every sign positive. The bounds never exceed those from
+// extents, on which the lanes' margins rest.
+#pragma once
+
+#include <coplanarity.hpp>
+#include <error_bound.hpp>
+
+namespace fastccd::scalar {
+
+using namespace FASTCCD_KERNEL_NAMESPACE;
+
+/// Share of the bound from extents that is kept, against products of tiny components that underflow: extents are
+/// at least 2^-100 here (scaling.hpp), so this is far above 2^-1075 times any extent.
+inline constexpr double underflow_share = 0x1p-40;
+
+inline Vector3<double> absolute(const Vector3<double>& v) { return {abs(v.x), abs(v.y), abs(v.z)}; }
+
+inline Vector3<double> cross_magnitude(const Vector3<double>& a, const Vector3<double>& b)
+{
+    return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
+}
+
+/// Sums of the absolute terms of the Bernstein coefficients of r_i x r_j; the middle one doubled.
+inline QuadraticVector<double> cross_product_magnitude(const RelativeMotion<double>& r, int i, int j)
+{
+    const Vector3<double> a0 = absolute(r.start[i]), a1 = absolute(r.end[i]);
+    const Vector3<double> b0 = absolute(r.start[j]), b1 = absolute(r.end[j]);
+    return {cross_magnitude(a0, b0), add(cross_magnitude(a0, b1), cross_magnitude(a1, b0)), cross_magnitude(a1, b1)};
+}
+
+/// Bound of the coefficients of one component of r_i x r_j on any part of the interval.
+/// Terms err by 2 rho + 1, sums by 2 more (the middle coefficient), the two blossom levels by 6: relative to m, the
+/// largest sum of magnitudes of the three, which also bounds the coefficients.
+inline double quadratic_bound(double start, double twice_middle, double end, double from_extents, const ErrorBounds& bounds)
+{
+    const double m = max(start, 0.5 * twice_middle, end);
+    const double bound = (2 * bounds.rho + 9 + ErrorBounds::slack) * ErrorBounds::u * m;
+    return min(bound + underflow_share * from_extents, from_extents);
+}
+
+/// Bound of the Bernstein coefficients of the coplanarity cubic on any part of the interval.
+/// Terms of 3 f1: 2 rho + 1, + 2 for the sums of the cross products, rho + 1 for the third factor, + 3 for the sums of
+/// the dot products, + 2 for the multiplication by 1/3, and 9 for three blossom levels: 3 rho + 18.
+inline double cubic_bound(const RelativeMotion<double>& r, double from_extents, const ErrorBounds& bounds)
+{
+    const QuadraticVector<double> p = cross_product_magnitude(r, 0, 1);
+    const Vector3<double> c0 = absolute(r.start[2]), c1 = absolute(r.end[2]);
+    const double m = max(max(dot(p.start, c0), dot(p.end, c1)),
+                         max(dot(p.twice_middle, c0) + dot(p.start, c1), dot(p.end, c0) + dot(p.twice_middle, c1)) / 3);
+    const double bound = (3 * bounds.rho + 18 + ErrorBounds::slack) * ErrorBounds::u * m;
+    return min(bound + underflow_share * from_extents, from_extents);
+}
+
+}  // namespace fastccd::scalar

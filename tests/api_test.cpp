@@ -1,0 +1,198 @@
+// What the public functions promise about arguments, errors and odd inputs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+#include "oracle/exact_ccd.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<oracle::Pair> uniform_pairs(std::size_t n)
+{
+    std::vector<oracle::Pair> pairs;
+    generate("uniform", oracle::Kind::vertex_face, 51, n, pairs);
+    return pairs;
+}
+
+Error error_of(const Options& options)
+{
+    const auto pairs = uniform_pairs(3);
+    std::vector<double> toi(3);
+    return time_of_impact(PairKind::vertex_face, interleaved(pairs), options, toi).error;
+}
+
+TEST(Api, RefusesBadOptions)
+{
+    for (const double bad : {0.0, -1e-9, not_a_number, infinity}) {
+        Options options;
+        options.tolerance = bad;
+        EXPECT_EQ(error_of(options), Error::bad_tolerance) << bad;
+    }
+    for (const double bad : {0.0, -0.5, 1.0000001, not_a_number, infinity}) {
+        Options options;
+        options.t_max = bad;
+        EXPECT_EQ(error_of(options), Error::bad_t_max) << bad;
+    }
+    EXPECT_EQ(error_of({}), Error::none);
+}
+
+TEST(Api, RefusesWrongSizes)
+{
+    const auto pairs = uniform_pairs(5);
+    std::vector<double> toi(4);
+    std::vector<std::uint8_t> roots(4);
+    EXPECT_EQ(time_of_impact(PairKind::vertex_face, interleaved(pairs), {}, toi).error, Error::wrong_size);
+    toi.resize(5);
+    EXPECT_EQ(time_of_impact(PairKind::vertex_face, interleaved(pairs), {}, toi, nullptr, roots).error, Error::wrong_size);
+    EXPECT_EQ(time_of_impact(PairKind::vertex_face, PairView::interleaved(static_cast<const double*>(nullptr), 5), {}, toi).error,
+              Error::wrong_size);
+}
+
+TEST(Api, RefusesAnIsaThatIsNotThere)
+{
+    for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {
+        Options options;
+        options.isa = isa;
+        EXPECT_EQ(error_of(options), isa_available(isa) ? Error::none : Error::isa_unavailable) << name(isa);
+    }
+}
+
+TEST(Api, HonoursTheEnvironmentUnlessToldOtherwise)
+{
+    const auto pairs = uniform_pairs(20);
+    setenv("FASTCCD_ISA", "scalar", 1);
+    EXPECT_EQ(answer(oracle::Kind::vertex_face, interleaved(pairs), {}).summary.isa, Isa::scalar);
+    setenv("FASTCCD_ISA", "mmx", 1);
+    EXPECT_EQ(error_of({}), Error::bad_isa_environment);
+    Options explicitly;
+    explicitly.isa = Isa::scalar;
+    EXPECT_EQ(error_of(explicitly), Error::none);
+    setenv("FASTCCD_ISA", "", 1);
+    EXPECT_EQ(answer(oracle::Kind::vertex_face, interleaved(pairs), {}).summary.isa, best_isa());
+    unsetenv("FASTCCD_ISA");
+}
+
+TEST(Api, IsaNames)
+{
+    for (const Isa isa : {Isa::automatic, Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon})
+        EXPECT_EQ(isa_from_name(name(isa)), isa);
+    EXPECT_FALSE(isa_from_name("AVX2"));
+    EXPECT_FALSE(isa_from_name(""));
+    EXPECT_TRUE(isa_available(Isa::scalar));
+}
+
+TEST(Api, NoPairs)
+{
+    std::vector<double> toi;
+    Summary summary;
+    EXPECT_TRUE(time_of_impact(PairKind::edge_edge, PairBuffer{}.view(), {}, toi, &summary).ok());
+    EXPECT_EQ(summary.pairs, 0u);
+    std::vector<Contact> contacts;
+    EXPECT_TRUE(find_contacts(PairKind::edge_edge, PairBuffer{}.view(), {}, contacts).ok());
+    EXPECT_TRUE(contacts.empty());
+}
+
+TEST(Api, InvalidPairsAreNamedAndTheOthersAnswered)
+{
+    const auto clean = uniform_pairs(2000);
+    const Answer expected = answer(oracle::Kind::vertex_face, interleaved(clean), {});
+    for (const double poison : {not_a_number, infinity, -infinity}) {
+        auto pairs = clean;
+        std::vector<std::size_t> poisoned;
+        for (std::size_t c = 0; c < pair_coordinates; ++c) {  // every coordinate once, in changing lanes
+            const std::size_t i = 13 * c + c % 8;
+            pairs[i][c / 3][c % 3] = poison;
+            poisoned.push_back(i);
+        }
+        for (const Isa isa : isas_to_test()) {
+            Options options;
+            options.isa = isa;
+            const Answer found = answer(oracle::Kind::vertex_face, interleaved(pairs), options);
+            std::vector<Contact> contacts;
+            std::vector<std::size_t> invalid;
+            ASSERT_TRUE(find_contacts(PairKind::vertex_face, interleaved(pairs), options, contacts, &invalid).ok());
+            EXPECT_EQ(invalid, poisoned) << name(isa) << ' ' << poison;
+            EXPECT_EQ(found.summary.invalid, poisoned.size());
+            std::size_t next = 0;
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                if (next < poisoned.size() && poisoned[next] == i) {
+                    EXPECT_TRUE(std::isnan(found.toi[i])) << i;
+                    ++next;
+                } else {
+                    EXPECT_EQ(found.toi[i], expected.toi[i]) << i;
+                }
+            }
+        }
+    }
+}
+
+TEST(Api, LargestFiniteCoordinatesAreValid)
+{
+    // Differences overflow; the pair is nevertheless answered.
+    constexpr double big = std::numeric_limits<double>::max();
+    const oracle::Pair pair{{{0, 0, big}, {-big, -big, 0}, {big, -big, 0}, {0, big, 0}, {0, 0, -big}, {-big, -big, 0}, {big, -big, 0}, {0, big, 0}}};
+    const Answer found = answer(oracle::Kind::vertex_face, interleaved({pair}), {});
+    EXPECT_LE(found.toi[0], 0.5);
+    EXPECT_GE(found.toi[0], 0.5 - 1e-9);
+}
+
+TEST(Api, NeverZeroWhenApartAtTheStart)
+{
+    // Contact after a tiny part of the step, far below E_tol, and a pair that is apart at t = 0.
+    for (const double gap : {1e-3, 1e-10, 1e-12, 1e-14}) {
+        const oracle::Pair pair{{{0, 0, gap}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, gap - 1}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}};
+        for (const Isa isa : isas_to_test()) {
+            Options options;
+            options.isa = isa;
+            const double toi = answer(oracle::Kind::vertex_face, interleaved({pair}), options).toi[0];
+            EXPECT_GT(toi, 0.0) << gap;
+            EXPECT_LE(toi, oracle::exact_ccd(oracle::Kind::vertex_face, pair).t_hi) << gap;
+        }
+    }
+    const oracle::Pair touching{{{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 1}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}};
+    EXPECT_EQ(answer(oracle::Kind::vertex_face, interleaved({touching}), {}).toi[0], 0.0);
+}
+
+TEST(Api, LanesPastTheEndOfABlockedViewAreIgnored)
+{
+    const auto pairs = uniform_pairs(11);
+    PairBuffer buffer{16};
+    for (std::size_t i = 0; i < 16; ++i)
+        for (std::size_t c = 0; c < pair_coordinates; ++c) buffer.at(i, c) = i < 11 ? pairs[i][c / 3][c % 3] : not_a_number;
+    const Answer found = answer(oracle::Kind::vertex_face, PairView::blocked(buffer.data(), 11), {});
+    EXPECT_EQ(found.summary.invalid, 0u);
+    EXPECT_EQ(found.toi, answer(oracle::Kind::vertex_face, interleaved(pairs), {}).toi);
+}
+
+TEST(Api, SummaryAgreesWithTheDenseAnswer)
+{
+    const auto pairs = uniform_pairs(20000);
+    const Answer found = answer(oracle::Kind::vertex_face, interleaved(pairs), {});
+    Contact earliest{std::numeric_limits<std::size_t>::max(), infinity};
+    std::size_t contacts = 0, odd = 0, even = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (!(found.toi[i] <= 1.0)) continue;
+        ++contacts;
+        odd += found.roots[i] % 2 == 1;
+        even += found.roots[i] != 0 && found.roots[i] % 2 == 0;
+        if (found.toi[i] < earliest.toi) earliest = {i, found.toi[i]};
+    }
+    EXPECT_EQ(found.summary.pairs, pairs.size());
+    EXPECT_EQ(found.summary.contacts, contacts);
+    EXPECT_EQ(found.summary.odd, odd);
+    EXPECT_EQ(found.summary.even, even);
+    EXPECT_EQ(found.summary.earliest.pair, earliest.pair);
+    EXPECT_EQ(found.summary.earliest.toi, earliest.toi);
+    EXPECT_LT(found.summary.scalar_pairs, pairs.size() / 100);
+}
+
+}  // namespace
+}  // namespace fastccd::testing

@@ -1,0 +1,268 @@
+// The command `fastccd` end to end: exit codes, messages, no half-written files, streams and signals.
+#include "command_test.hpp"
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pty.h>
+
+#include <fastccd/isa.hpp>
+
+#include "progress.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+// ---- Bad input --------------------------------------------------------------------------------------------
+
+struct BadFile {
+    const char* name;
+    const char* contents;
+    const char* message;
+};
+
+TEST(CommandErrors, BadFilesAreNamedAndLeaveNothing)
+{
+    const std::string seven = "0,1,0,1,0,1\n0,1,0,1,0,1\n0,1,0,1,0,1\n0,1,0,1,0,1\n0,1,0,1,0,1\n0,1,0,1,0,1\n0,1,0,1,0,1\n";
+    const std::string third = seven + "1,3,0,1,0,1\n";
+    for (const auto& [file, contents, message] :
+         {BadFile{"short.npy", "\x93NUMPY", "truncated"}, BadFile{"other.npy", "hello", "not a .npy file"},
+          BadFile{"seven.csv", seven.c_str(), "ends after row 7"},
+          BadFile{"words.csv", "a,b,c,d,e,f\n", "row 1, column 1 (x numerator): 'a' is not an integer"},
+          BadFile{"third.csv", third.c_str(), "row 8, column 1 (x numerator): 1/3 is not a double"},
+          BadFile{"pairs.txt", "", "files of pairs end in .npy or .csv"}}) {
+        const ScratchDirectory directory;
+        const std::string path = directory.write(file, contents);
+        const std::string good = directory.write("good.csv", "");
+        const Outcome outcome = run({"run", good, path, "--kind", "vf", "--hits", directory / "hits.csv"});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(outcome.out, "");
+        EXPECT_EQ(outcome.error.rfind("fastccd: " + path + ": ", 0), 0U) << outcome.error;
+        EXPECT_NE(outcome.error.find(message), std::string::npos) << outcome.error;
+        EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
+        EXPECT_EQ(directory.names().size(), 2U);
+    }
+    const ScratchDirectory directory;
+    EXPECT_NE(run({"run", directory / "none.npy", "--kind", "vf"}).error.find("none.npy: cannot be opened: No such file"),
+              std::string::npos);
+    EXPECT_EQ(run_json({"run", directory.write("third.csv", third), "--kind", "vf", "--round"})["pairs"], 1);
+}
+
+TEST(CommandErrors, HitsThatCannotBeWrittenAreAnError)
+{
+    const ScratchDirectory directory;
+    const Arguments random{"random", "--kind", "vf", "--pairs", "1000", "--hits"};
+    for (const auto& [target, message] :
+         {std::pair{directory / "none/hits.csv", "cannot be created: No such file"},
+          std::pair{directory / ".", "is a directory"}, std::pair{std::string{"/dev/full"}, "No space left"}}) {
+        Arguments arguments = random;
+        arguments.push_back(target);
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_NE(outcome.error.find(message), std::string::npos) << outcome.error;
+        EXPECT_EQ(outcome.out, "");
+    }
+    EXPECT_TRUE(directory.names().empty());
+
+    const std::string input = directory.write("pairs.csv", "");
+    const Outcome onto_input = run({"run", input, "--kind", "vf", "--hits", directory / "./pairs.csv"});
+    EXPECT_EQ(onto_input.status, 2);
+    EXPECT_NE(onto_input.error.find("is an input"), std::string::npos) << onto_input.error;
+}
+
+TEST(CommandErrors, HitsReplaceAFileOnlyWhenComplete)
+{
+    const ScratchDirectory directory;
+    const std::string hits = directory.write("hits.csv", "old");
+    std::filesystem::permissions(hits, std::filesystem::perms{0640});
+    std::filesystem::create_symlink("hits.csv", directory / "link.csv");
+    EXPECT_EQ(run({"run", directory.write("bad.csv", "1"), "--kind", "vf", "--hits", hits}).status, 1);
+    EXPECT_EQ(read_text(hits), "old");
+    EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "100", "--hits", directory / "link.csv"}).status, 0);
+    EXPECT_NE(rows(hits), "");
+    EXPECT_TRUE(std::filesystem::is_symlink(directory / "link.csv"));
+    EXPECT_EQ(std::filesystem::status(hits).permissions(), std::filesystem::perms{0640});
+    EXPECT_EQ(directory.names().size(), 3U);
+}
+
+// ---- Command line -----------------------------------------------------------------------------------------
+
+TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
+{
+    const ScratchDirectory directory;
+    const std::string none = directory.write("none.csv", "");
+    const struct {
+        Arguments arguments;
+        const char* message;
+    } table[] = {
+        {{}, "A subcommand is required"},
+        {{"fly"}, "fly"},
+        {{"random"}, "--kind is required"},
+        {{"random", "--kind", "ve"}, "--kind: 've' is neither vf"},
+        {{"random", "--kind", "vf", "--pairs", "-1"}, "--pairs"},
+        {{"random", "--kind", "vf", "--pairs", "1e6"}, "--pairs: '1e6' is not a whole number"},
+        {{"random", "--kind", "vf", "--pairs", "99999999999999999999"}, "--pairs: '99999999999999999999' is not"},
+        {{"random", "--kind", "vf", "--seed", "x"}, "--seed: 'x' is not"},
+        {{"random", "--kind", "vf", "--tolerance", "0"}, "--tolerance: '0' is not a positive"},
+        {{"random", "--kind", "vf", "--tolerance", "nan"}, "--tolerance: 'nan' is not"},
+        {{"random", "--kind", "vf", "--tolerance", "inf"}, "--tolerance: 'inf' is not"},
+        {{"random", "--kind", "vf", "--tolerance", "1x"}, "--tolerance: '1x' is not"},
+        {{"random", "--kind", "vf", "--t-max", "1.5"}, "--t-max: '1.5' is not"},
+        {{"random", "--kind", "vf", "--t-max", "0"}, "--t-max: '0' is not"},
+        {{"random", "--kind", "vf", "--threads", "0"}, "--threads: '0' is not a whole number from 1"},
+        {{"random", "--kind", "vf", "--isa", "mmx"}, "--isa: there is no instruction set 'mmx'; available here: scalar"},
+        {{"random", "--kind", "vf", "--nothing"}, "--nothing"},
+        {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
+        {{"run", "--kind", "vf"}, "FILE is required"},
+        {{"run", none}, "--kind is required"},
+        {{"run", none, "--kind", "vf", "--range", "0:1"}, "--range: 0:1 ends beyond the last of 0 pairs"},
+        {{"run", none, "--kind", "vf", "--range", "1:0"}, "--range: 1:0 begins after its end"},
+        {{"run", none, "--kind", "vf", "--range", "5"}, "--range: '5' is not A:B"},
+        {{"run", none, "--kind", "vf", "--range", "a:b"}, "--range: 'a:b' is not A:B"},
+        {{"run", none, "--kind", "vf", "--range", "0:0:0"}, "--range: '0:0:0' is not A:B"},
+        {{"run", none, "--kind", "vf", "--range", "-1:0"}, "--range"},
+    };
+    for (const auto& [arguments, message] : table) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2) << message;
+        EXPECT_EQ(outcome.out, "") << message;
+        EXPECT_EQ(outcome.error.rfind("fastccd: ", 0), 0U) << outcome.error;
+        EXPECT_NE(outcome.error.find(message), std::string::npos) << outcome.error;
+        EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
+    }
+}
+
+TEST(CommandErrors, HelpAndVersion)
+{
+    for (const Arguments& arguments : {Arguments{"--help"}, {"run", "--help"}, {"random", "-h"}, {"isa", "--help"}}) {
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_NE(outcome.out.find("Examples:\n  fastccd random"), std::string::npos) << outcome.out;
+    }
+    EXPECT_EQ(run({"--version"}).out.rfind("fastccd ", 0), 0U);
+}
+
+TEST(CommandErrors, InstructionSetsAreListedForcedAndRefused)
+{
+    const Json list = run_json({"isa"});
+    EXPECT_EQ(list["used"], name(best_isa()));
+    for (const Json& isa : list["isas"]) {
+        const std::string chosen = isa["name"];
+        const Arguments arguments{"random", "--kind", "vf", "--pairs", "100", "--json"};
+        Arguments forced = arguments;
+        forced.insert(forced.end(), {"--isa", chosen});
+        const Outcome option = run(forced);
+        const Outcome environment = run(arguments, {"FASTCCD_ISA=" + chosen});
+        if (isa["available"]) {
+            EXPECT_EQ(Json::parse(option.out)["isa"], chosen);
+            EXPECT_EQ(Json::parse(environment.out)["isa"], chosen);
+        } else {
+            for (const Outcome& refused : {option, environment}) {
+                EXPECT_EQ(refused.status, 2);
+                EXPECT_NE(refused.error.find("available here: scalar"), std::string::npos) << refused.error;
+            }
+        }
+    }
+    EXPECT_NE(run({"isa"}).out.find(std::string{name(best_isa())}), std::string::npos);
+    EXPECT_EQ(run({"isa"}, {"FASTCCD_ISA=mmx"}).status, 2);
+}
+
+// ---- Streams and signals ----------------------------------------------------------------------------------
+
+TEST(CommandErrors, HitsOnStandardOutputMoveTheReport)
+{
+    const Outcome outcome = run({"random", "--kind", "vf", "--pairs", "1000", "--hits", "-", "--json"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.out.rfind("pair,toi\n", 0), 0U);
+    const auto lines = std::count(outcome.out.begin(), outcome.out.end(), '\n');
+    EXPECT_EQ(Json::parse(outcome.error)["contacts"], lines - 1);
+}
+
+TEST(CommandErrors, OutputThatGoesNowhere)
+{
+    const Arguments random{"random", "--kind", "vf", "--pairs", "1000"};
+    const Outcome no_reader = run(random, {}, {.no_reader = true});
+    EXPECT_EQ(no_reader.status, 128 + SIGPIPE);
+    EXPECT_EQ(no_reader.error, "");
+    const Outcome closed = run(random, {}, {.closed = true});
+    EXPECT_EQ(closed.status, 0);
+    EXPECT_EQ(closed.error, "");
+    const Outcome full = run(random, {}, {.path = "/dev/full"});
+    EXPECT_EQ(full.status, 1);
+    EXPECT_EQ(full.error, "fastccd: standard output: cannot be written: No space left on device\n");
+}
+
+/// Runs on a terminal of its own and sends `signal` once the progress bar is there.
+Outcome run_on_terminal(const Arguments& arguments, int signal)
+{
+    int terminal = -1;
+    const winsize size{.ws_row = 24, .ws_col = 70, .ws_xpixel = 0, .ws_ypixel = 0};
+    const pid_t child = ::forkpty(&terminal, nullptr, nullptr, &size);
+    if (child < 0) throw std::runtime_error("cannot fork");
+    if (child == 0) {
+        ::setenv("TERM", "xterm", 1);
+        become_command(arguments);
+    }
+    Outcome outcome;
+    bool sent = false;
+    char buffer[4096];
+    for (ssize_t n = 0; (n = ::read(terminal, buffer, sizeof buffer)) > 0;) {
+        outcome.out.append(buffer, static_cast<std::size_t>(n));
+        if (!sent && outcome.out.find('%') != std::string::npos) {
+            if (signal == SIGINT) {
+                const char control_c = 3;
+                sent = ::write(terminal, &control_c, 1) == 1;
+            } else {
+                sent = ::kill(child, signal) == 0;
+            }
+        }
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    ::close(terminal);
+    outcome.status = exit_status(status);
+    return outcome;
+}
+
+TEST(CommandErrors, SignalsEndItCleanly)
+{
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const ScratchDirectory directory;
+        const std::string hits = directory.write("hits.csv", "old");
+        const Outcome outcome =
+            run_on_terminal({"random", "--kind", "vf", "--pairs", "10000000000", "--hits", hits}, signal);
+        EXPECT_EQ(outcome.status, 128 + signal);
+        EXPECT_NE(outcome.out.find("\r\x1b[K["), std::string::npos) << outcome.out;
+        EXPECT_NE(outcome.out.find(" M pairs/s  "), std::string::npos) << outcome.out;
+        // The last thing on the terminal is an erased line.
+        EXPECT_EQ(outcome.out.substr(outcome.out.size() - 4), "\r\x1b[K");
+        EXPECT_EQ(directory.names(), std::vector<std::string>{"hits.csv"});
+        EXPECT_EQ(read_text(hits), "old");
+    }
+}
+
+TEST(ProgressLine, FitsEveryTerminal)
+{
+    using tools::progress_line;
+    for (std::size_t width = 0; width < 200; ++width) {
+        for (const std::size_t done : {0U, 1U, 500U, 1000U}) {
+            const std::string line = progress_line(done, 1000, 2.0, width);
+            EXPECT_LT(line.size(), std::max<std::size_t>(width, 1));
+            EXPECT_EQ(line.empty(), width <= 5) << width;
+        }
+    }
+    EXPECT_EQ(progress_line(500'000'000, 2'000'000'000, 10, 70),
+              "[#######                        ]  25 %  50.0 M pairs/s  0:00:30 left");
+    EXPECT_EQ(progress_line(0, 0, 0, 10), "100 %");
+}
+
+}  // namespace
+}  // namespace fastccd::testing

@@ -1,0 +1,228 @@
+// The same bits everywhere: instruction sets x layouts x thread counts, against the certified search.
+#include <gtest/gtest.h>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+#include "test_data.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+Answer reference(oracle::Kind kind, const PairView& pairs, double tolerance, double t_max = 1.0)
+{
+    Options options;
+    options.tolerance = tolerance;
+    options.t_max = t_max;
+    options.reference = true;
+    return answer(kind, pairs, options);
+}
+
+void expect_same(const Answer& expected, const Answer& found, const std::string& what)
+{
+    const std::size_t i = first_difference(expected, found);
+    ASSERT_EQ(i, expected.toi.size()) << what << ": pair " << i << ": toi " << found.toi[i] << " instead of "
+                                      << expected.toi[i] << ", roots " << int{found.roots[i]} << " instead of "
+                                      << int{expected.roots[i]};
+    EXPECT_EQ(expected.summary.contacts, found.summary.contacts) << what;
+    EXPECT_EQ(expected.summary.odd, found.summary.odd) << what;
+    EXPECT_EQ(expected.summary.even, found.summary.even) << what;
+    EXPECT_EQ(expected.summary.invalid, found.summary.invalid) << what;
+    EXPECT_EQ(expected.summary.earliest.pair, found.summary.earliest.pair) << what;
+}
+
+void expect_same_on_every_isa(oracle::Kind kind, const PairView& pairs, double tolerance, const std::string& what,
+                              double t_max = 1.0)
+{
+    const Answer expected = reference(kind, pairs, tolerance, t_max);
+    for (const Isa isa : isas_to_test()) {
+        Options options;
+        options.tolerance = tolerance;
+        options.t_max = t_max;
+        options.isa = isa;
+        const Answer found = answer(kind, pairs, options);
+        EXPECT_EQ(found.summary.isa, isa);
+        expect_same(expected, found, what + " " + name(isa));
+    }
+}
+
+/// Pairs of every family, of both kinds of coordinates, mixed so that any batch holds easy and hard ones.
+std::vector<oracle::Pair> mixed_pairs(oracle::Kind kind, std::uint64_t seed, std::size_t per_family)
+{
+    std::vector<oracle::Pair> mixed, family_pairs;
+    for (const std::string& family : families()) {
+        generate(family, kind, seed, per_family, family_pairs);
+        mixed.insert(mixed.end(), family_pairs.begin(), family_pairs.end());
+    }
+    std::vector<oracle::Pair> shuffled(mixed.size());
+    std::size_t stride = 7919;  // a prime that does not divide the size
+    while (mixed.size() % stride == 0) stride += 2;
+    for (std::size_t i = 0; i < mixed.size(); ++i) shuffled[(i * stride) % mixed.size()] = mixed[i];
+    return shuffled;
+}
+
+constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
+
+TEST(SameBits, IsasOnMadePairs)
+{
+    for (const auto kind : kinds) {
+        const auto pairs = mixed_pairs(kind, 31, 101);
+        const PairBuffer buffer = to_buffer(pairs);
+        for (const double tolerance : {1.0, 0.3, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15})
+            expect_same_on_every_isa(kind, buffer.view(), tolerance, std::string(kind_name(kind)) + " E_tol " + std::to_string(tolerance));
+        for (const double t_max : {0.7, 1e-4})
+            expect_same_on_every_isa(kind, buffer.view(), 1e-9, std::string(kind_name(kind)) + " t_max", t_max);
+    }
+}
+
+TEST(SameBits, IsasOnManyUniformPairs)
+{
+    std::vector<oracle::Pair> pairs;
+    for (const auto kind : kinds) {
+        generate("uniform", kind, 32, 60000, pairs);
+        expect_same_on_every_isa(kind, to_buffer(pairs).view(), 1e-9, kind_name(kind));
+    }
+}
+
+TEST(SameBits, IsasOnPublicData)
+{
+    const auto data = data_directory();
+    if (!data) GTEST_SKIP() << no_data_message;
+    auto sets = load_hardcases(*data);
+    for (QuerySet& set : load_queries(*data)) sets.push_back(std::move(set));
+    for (const double tolerance : {1e-6, 1e-9, 1e-12})
+        for (const QuerySet& set : sets)
+            expect_same_on_every_isa(set.kind, interleaved(set.pairs), tolerance, set.name + " E_tol " + std::to_string(tolerance));
+}
+
+TEST(SameBits, Layouts)
+{
+    for (const auto kind : kinds) {
+        const auto pairs = mixed_pairs(kind, 33, 37);  // a size that is no multiple of 8
+        const Answer expected = reference(kind, interleaved(pairs), 1e-9);
+        const PairBuffer buffer = to_buffer(pairs);
+
+        // 24 columns, and the same backwards with a negative stride.
+        std::vector<double> columns(pairs.size() * pair_coordinates), backwards(columns.size());
+        std::array<const double*, pair_coordinates> forward{}, reversed{};
+        for (std::size_t c = 0; c < pair_coordinates; ++c) {
+            forward[c] = &columns[c * pairs.size()];
+            reversed[c] = &backwards[(c + 1) * pairs.size() - 1];
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                columns[c * pairs.size() + i] = pairs[i][c / 3][c % 3];
+                backwards[(c + 1) * pairs.size() - 1 - i] = pairs[i][c / 3][c % 3];
+            }
+        }
+        for (const Isa isa : isas_to_test()) {
+            Options options;
+            options.isa = isa;
+            const auto expect = [&](const PairView& view, const char* layout) {
+                expect_same(expected, answer(kind, view, options), std::string(layout) + ' ' + name(isa));
+            };
+            expect(buffer.view(), "blocked");
+            expect(interleaved(pairs), "interleaved");
+            expect(PairView::strided(forward, 1, pairs.size()), "strided");
+            expect(PairView::strided(reversed, -1, pairs.size()), "strided backwards");
+        }
+    }
+}
+
+TEST(SameBits, FloatLayoutsWidenExactly)
+{
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs, more;
+        for (const char* family : {"f32_uniform", "f32_boundary", "f32_simcloth", "f32_degenerate"}) {
+            generate(family, kind, 34, 203, more);
+            pairs.insert(pairs.end(), more.begin(), more.end());
+        }
+        const Answer expected = reference(kind, interleaved(pairs), 1e-9);
+        const std::size_t blocks = (pairs.size() + block_pairs - 1) / block_pairs;
+        std::vector<float> records(pairs.size() * pair_coordinates), blocked(blocks * block_coordinates),
+            columns(records.size());
+        std::array<const float*, pair_coordinates> column{};
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            for (std::size_t c = 0; c < pair_coordinates; ++c) {
+                const float value = static_cast<float>(pairs[i][c / 3][c % 3]);
+                records[i * pair_coordinates + c] = value;
+                blocked[(i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs] = value;
+                columns[c * pairs.size() + i] = value;
+                column[c] = &columns[c * pairs.size()];
+            }
+        for (const Isa isa : isas_to_test()) {
+            Options options;
+            options.isa = isa;
+            expect_same(expected, answer(kind, PairView::interleaved(records.data(), pairs.size()), options), "float interleaved");
+            expect_same(expected, answer(kind, PairView::blocked(blocked.data(), pairs.size()), options), "float blocked");
+            expect_same(expected, answer(kind, PairView::strided(column, 1, pairs.size()), options), "float strided");
+        }
+    }
+}
+
+TEST(SameBits, Threads)
+{
+    for (const auto kind : kinds) {
+        const auto pairs = mixed_pairs(kind, 35, 301);
+        const PairBuffer buffer = to_buffer(pairs);
+        const Answer expected = reference(kind, buffer.view(), 1e-9);
+        for (const int threads : {1, 2, 3, 7}) {
+            tbb::global_control limit{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)};
+            tbb::task_arena arena{threads};
+            arena.execute([&] {
+                expect_same(expected, answer(kind, buffer.view(), {}), std::to_string(threads) + " threads");
+                std::vector<Contact> contacts;
+                ASSERT_TRUE(find_contacts(pair_kind(kind), buffer.view(), {}, contacts).ok());
+                std::size_t next = 0;
+                for (std::size_t i = 0; i < pairs.size(); ++i)
+                    if (expected.toi[i] <= 1.0) {
+                        ASSERT_LT(next, contacts.size());
+                        EXPECT_EQ(contacts[next].pair, i);
+                        EXPECT_EQ(contacts[next++].toi, expected.toi[i]);
+                    }
+                EXPECT_EQ(next, contacts.size());
+            });
+        }
+    }
+}
+
+TEST(SameBits, AnyLaneAndAnyNeighbours)
+{
+    // One pair in every lane of otherwise different company, and in buffers of every size around a block.
+    for (const auto kind : kinds) {
+        const auto pairs = mixed_pairs(kind, 36, 3);
+        const Answer expected = reference(kind, interleaved(pairs), 1e-9);
+        for (std::size_t offset = 0; offset < 9; ++offset)
+            for (const std::size_t size : {1u, 2u, 7u, 8u, 9u, 15u, 17u, 33u}) {
+                const std::vector<oracle::Pair> part(pairs.begin() + static_cast<std::ptrdiff_t>(offset),
+                                                     pairs.begin() + static_cast<std::ptrdiff_t>(offset + size));
+                for (const Isa isa : isas_to_test()) {
+                    Options options;
+                    options.isa = isa;
+                    const Answer found = answer(kind, to_buffer(part).view(), options);
+                    for (std::size_t i = 0; i < size; ++i) EXPECT_EQ(found.toi[i], expected.toi[offset + i]);
+                }
+            }
+    }
+}
+
+TEST(SameBits, PowerOfTwoScalePerAxis)
+{
+    for (const auto kind : kinds)
+        for (const char* family : {"uniform", "simcloth", "boundary", "degenerate", "coplanar_map"}) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 37, 200, pairs);
+            const Answer expected = answer(kind, interleaved(pairs), {});
+            constexpr double scales[][3] = {{0x1p40, 0x1p40, 0x1p40}, {0x1p-60, 0x1p30, 1.0}, {0x1p500, 0x1p-500, 0x1p-3}};
+            for (const auto& scale : scales) {
+                auto scaled = pairs;
+                for (auto& pair : scaled)
+                    for (auto& point : pair)
+                        for (std::size_t axis = 0; axis < 3; ++axis) point[axis] *= scale[axis];
+                expect_same(expected, answer(kind, interleaved(scaled), {}), std::string(family) + " scaled");
+            }
+        }
+}
+
+}  // namespace
+}  // namespace fastccd::testing

@@ -1,0 +1,16 @@
+# Tests of the command and of what it is made of.
+
+function(fastccd_add_tools_test name)
+  fastccd_add_test(${name} ${name}.cpp)
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE fastccd_tools nlohmann_json::nlohmann_json ${GMP_LIBRARY})
+endfunction()
+
+foreach(test IN ITEMS npy_test rational_csv_test random_pairs_test mesh_io_test broad_phase_test make_scene_test)
+  fastccd_add_tools_test(${test})
+endforeach()
+foreach(test IN ITEMS command_test command_errors_test)
+  fastccd_add_tools_test(${test})
+  add_dependencies(${test} fastccd_command)
+  target_compile_definitions(${test} PRIVATE FASTCCD_COMMAND="$<TARGET_FILE:fastccd_command>")
+endforeach()

@@ -1,0 +1,190 @@
+// Nothing is missed and nothing is late, against exact truth: the public data, and pairs made here and decided
+// by the oracle. False alarms are counted and bounded.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+#include "oracle/exact_ccd.hpp"
+#include "test_data.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+constexpr double tolerances[] = {1e-6, 1e-9, 1e-12};
+
+struct Count {
+    std::size_t pairs = 0, contacts = 0, missed = 0, late = 0, false_alarms = 0;
+    std::string first_fault;
+
+    void add(const QuerySet& set, const Answer& found)
+    {
+        for (std::size_t i = 0; i < set.pairs.size(); ++i) {
+            const bool reported = found.toi[i] <= 1.0;
+            ++pairs;
+            contacts += set.truth[i] != 0;
+            if (set.truth[i] == 0) {
+                false_alarms += reported;
+            } else if (!reported) {
+                fault(missed, "missed", set, i);
+            } else if (!set.t_hi.empty() && found.toi[i] > set.t_hi[i]) {
+                fault(late, "late", set, i);
+            }
+        }
+    }
+
+private:
+    void fault(std::size_t& counter, const char* what, const QuerySet& set, std::size_t i)
+    {
+        if (counter++ == 0 && first_fault.empty())
+            first_fault = std::string(what) + ": " + set.name + " pair " + std::to_string(i) + ": " + lossless(set.pairs[i]);
+    }
+};
+
+void expect_nothing_missed_or_late(const std::vector<QuerySet>& sets, double tolerance, Count (&by_kind)[2])
+{
+    Options options;
+    options.tolerance = tolerance;
+    for (const QuerySet& set : sets)
+        by_kind[set.kind == oracle::Kind::edge_edge].add(set, answer(set.kind, interleaved(set.pairs), options));
+    for (const Count& count : by_kind) {
+        EXPECT_EQ(count.missed, 0u) << count.first_fault;
+        EXPECT_EQ(count.late, 0u) << count.first_fault;
+        EXPECT_GT(count.contacts, 0u);
+    }
+    std::printf("E_tol %g: vertex-face %zu pairs, %zu contacts, %zu false alarms; edge-edge %zu, %zu, %zu\n", tolerance,
+                by_kind[0].pairs, by_kind[0].contacts, by_kind[0].false_alarms, by_kind[1].pairs, by_kind[1].contacts,
+                by_kind[1].false_alarms);
+}
+
+TEST(Truth, PublicHardCases)
+{
+    const auto data = data_directory();
+    if (!data) GTEST_SKIP() << no_data_message;
+    const auto sets = load_hardcases(*data);
+    ASSERT_GE(sets.size(), 104u);
+    for (const double tolerance : tolerances) {
+        Count by_kind[2];
+        expect_nothing_missed_or_late(sets, tolerance, by_kind);
+    }
+}
+
+TEST(Truth, PublicQueries)
+{
+    const auto data = data_directory();
+    if (!data) GTEST_SKIP() << no_data_message;
+    const auto sets = load_queries(*data);
+    ASSERT_GE(sets.size(), 24u);
+    for (const double tolerance : tolerances) {
+        Count by_kind[2];
+        expect_nothing_missed_or_late(sets, tolerance, by_kind);
+        EXPECT_LE(by_kind[0].false_alarms, 15u) << "vertex-face, E_tol " << tolerance;
+        EXPECT_LE(by_kind[1].false_alarms, 23u) << "edge-edge, E_tol " << tolerance;
+    }
+}
+
+/// Families in which every pair is far from a near miss: any false alarm is a fault.
+bool has_near_misses(const std::string& family)
+{
+    for (const char* clear : {"uniform", "scale", "big_offset", "aniso", "common_velocity", "tinygrid", "near_interior"})
+        if (family.find(clear) != std::string::npos) return false;
+    return true;
+}
+
+TEST(Truth, MadePairs)
+{
+    constexpr std::size_t pairs_per_family = 400;
+    constexpr std::uint64_t seed = 20;
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        for (const std::string& family : families()) {
+            QuerySet set;
+            set.name = family;
+            set.kind = kind;
+            generate(family, kind, seed, pairs_per_family, set.pairs);
+            for (const oracle::Pair& pair : set.pairs) {
+                const oracle::Verdict verdict = oracle::exact_ccd(kind, pair);
+                set.truth.push_back(verdict.contact);
+                set.t_lo.push_back(verdict.t_lo);
+                set.t_hi.push_back(verdict.t_hi);
+            }
+            for (const double tolerance : tolerances) {
+                Options options;
+                options.tolerance = tolerance;
+                Count count;
+                count.add(set, answer(kind, interleaved(set.pairs), options));
+                EXPECT_EQ(count.missed, 0u) << kind_name(kind) << ' ' << count.first_fault;
+                EXPECT_EQ(count.late, 0u) << kind_name(kind) << ' ' << count.first_fault;
+                if (!has_near_misses(family)) {
+                    EXPECT_EQ(count.false_alarms, 0u) << kind_name(kind) << ' ' << family;
+                }
+            }
+        }
+    }
+}
+
+TEST(Truth, ShorterStep)
+{
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        for (const char* family : {"uniform", "boundary", "coplanar_map", "grazing_exact", "t0_contact", "resting"}) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 21, 300, pairs);
+            for (const double t_max : {0.5, 1.0 / 3.0, 0.9999999, 1e-3}) {
+                Options options;
+                options.t_max = t_max;
+                const Answer found = answer(kind, interleaved(pairs), options);
+                for (std::size_t i = 0; i < pairs.size(); ++i) {
+                    const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i], t_max);
+                    if (!verdict.contact) continue;
+                    EXPECT_LE(found.toi[i], verdict.t_hi)
+                        << (found.toi[i] <= 1.0 ? "late: " : "missed: ") << family << " t_max " << t_max << ' ' << lossless(pairs[i]);
+                }
+            }
+        }
+    }
+}
+
+TEST(Truth, RegularContactIsFoundWithinTheTolerance)
+{
+    std::vector<oracle::Pair> pairs;
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        generate("uniform", kind, 22, 2000, pairs);
+        for (const double tolerance : tolerances) {
+            Options options;
+            options.tolerance = tolerance;
+            const Answer found = answer(kind, interleaved(pairs), options);
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i]);
+                ASSERT_EQ(found.toi[i] <= 1.0, verdict.contact);
+                if (verdict.contact && verdict.contact_class == oracle::Class::regular) {
+                    // Below 1e-9 rounding takes over, amplified where the primitives meet at a small angle.
+                    EXPECT_GE(found.toi[i], verdict.t_lo - std::max(tolerance, 1e-10));
+                    EXPECT_EQ(found.roots[i], verdict.roots);
+                }
+            }
+        }
+    }
+}
+
+TEST(Truth, RootsOfTangentialAndCoplanarContacts)
+{
+    // f = det(r1, r2, r3) = 2 (1 - 2t)^2: the face turns about the x axis while it passes over the vertex, so that
+    // the vertex touches its plane at t = 1/2 without crossing it.
+    const oracle::Pair grazing{{{0, 0, 0}, {-1, -1, -1}, {1, -1, -1}, {0, 1, 0}, {0, 0, 0}, {-1, 1, -1}, {1, 1, -1}, {0, -1, 0}}};
+    const oracle::Verdict verdict = oracle::exact_ccd(oracle::Kind::vertex_face, grazing);
+    const Answer touched = answer(oracle::Kind::vertex_face, interleaved({grazing}), {});
+    EXPECT_EQ(touched.toi[0] <= 1.0, verdict.contact);
+
+    // Always coplanar: contact, but no number of roots.
+    const oracle::Pair sliding{{{-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}}};
+    ASSERT_EQ(oracle::exact_ccd(oracle::Kind::vertex_face, sliding).contact_class, oracle::Class::always_coplanar);
+    const Answer flat = answer(oracle::Kind::vertex_face, interleaved({sliding}), {});
+    EXPECT_LE(flat.toi[0], 0.5);
+    EXPECT_GE(flat.toi[0], 0.5 - 1e-9);
+    EXPECT_EQ(flat.roots[0], 0);
+    EXPECT_EQ(flat.summary.odd + flat.summary.even, 0u);
+}
+
+}  // namespace
+}  // namespace fastccd::testing

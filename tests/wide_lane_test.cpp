@@ -1,0 +1,105 @@
+// The pipeline on a portable lane type of 8 pairs: the logic of the widest batches, on machines without them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include <pipeline.hpp>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Eight doubles, one operation after the other.
+struct Array8 {
+    double value[8];
+};
+struct Mask8 {
+    bool value[8];
+};
+
+template <class R, class Operation>
+R each(Operation operation)
+{
+    R result;
+    for (int i = 0; i < 8; ++i) result.value[i] = operation(i);
+    return result;
+}
+
+inline Array8 operator+(Array8 a, Array8 b) { return each<Array8>([&](int i) { return a.value[i] + b.value[i]; }); }
+inline Array8 operator-(Array8 a, Array8 b) { return each<Array8>([&](int i) { return a.value[i] - b.value[i]; }); }
+inline Array8 operator*(Array8 a, Array8 b) { return each<Array8>([&](int i) { return a.value[i] * b.value[i]; }); }
+inline Array8 operator/(Array8 a, Array8 b) { return each<Array8>([&](int i) { return a.value[i] / b.value[i]; }); }
+inline Mask8 operator&(Mask8 a, Mask8 b) { return each<Mask8>([&](int i) { return a.value[i] && b.value[i]; }); }
+inline Mask8 operator|(Mask8 a, Mask8 b) { return each<Mask8>([&](int i) { return a.value[i] || b.value[i]; }); }
+inline Mask8 operator!(Mask8 a) { return each<Mask8>([&](int i) { return !a.value[i]; }); }
+
+template <>
+struct Lane<Array8> {
+    using One = Lane<double>;
+    using Mask = Mask8;
+    static constexpr unsigned width = 8;
+
+    static Array8 broadcast(double x) { return each<Array8>([&](int) { return x; }); }
+    static Array8 load(const double* p) { return each<Array8>([&](int i) { return p[i]; }); }
+    static void store(double* p, Array8 x)
+    {
+        for (int i = 0; i < 8; ++i) p[i] = x.value[i];
+    }
+    static Array8 lane_number() { return each<Array8>([](int i) { return double(i); }); }
+    static Array8 min(Array8 a, Array8 b) { return each<Array8>([&](int i) { return One::min(a.value[i], b.value[i]); }); }
+    static Array8 max(Array8 a, Array8 b) { return each<Array8>([&](int i) { return One::max(a.value[i], b.value[i]); }); }
+    static Array8 abs(Array8 a) { return each<Array8>([&](int i) { return std::fabs(a.value[i]); }); }
+    static Array8 sqrt(Array8 a) { return each<Array8>([&](int i) { return std::sqrt(a.value[i]); }); }
+    static Array8 select(Mask m, Array8 yes, Array8 no) { return each<Array8>([&](int i) { return m.value[i] ? yes.value[i] : no.value[i]; }); }
+    static Mask less(Array8 a, Array8 b) { return each<Mask>([&](int i) { return a.value[i] < b.value[i]; }); }
+    static Mask less_equal(Array8 a, Array8 b) { return each<Mask>([&](int i) { return a.value[i] <= b.value[i]; }); }
+    static unsigned bits(Mask m)
+    {
+        unsigned result = 0;
+        for (unsigned i = 0; i < 8; ++i) result |= unsigned{m.value[i]} << i;
+        return result;
+    }
+    static void compress_store(double* p, unsigned bits, Array8 x)
+    {
+        for (int i = 0; i < 8; ++i)
+            if ((bits >> i & 1u) != 0) *p++ = x.value[i];
+    }
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
+
+namespace fastccd::testing {
+namespace {
+
+TEST(WideLanes, DecideWhatTheCertifiedSearchDecides)
+{
+    const auto scratch = std::make_unique<TileScratch>();
+    const SearchParameters parameters{1e-9, 1.0, true};
+    std::size_t decided = 0;
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 41, 509, pairs);
+            const PairBuffer buffer = to_buffer(pairs);
+            const PairView view = buffer.view();
+            Options options;
+            options.reference = true;
+            const Answer expected = answer(kind, view, options);
+            FASTCCD_KERNEL_NAMESPACE::run_tile<FASTCCD_KERNEL_NAMESPACE::Array8>(
+                {pair_kind(kind), &view, 0, pairs.size(), &parameters}, *scratch);
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                if (scratch->is_undecided[i]) continue;
+                ++decided;
+                ASSERT_EQ(scratch->parameter[i], expected.toi[i]) << family << ' ' << lossless(pairs[i]);
+                if (expected.toi[i] <= 1.0) {
+                    ASSERT_EQ(scratch->roots[i], expected.roots[i]) << family;
+                }
+            }
+        }
+    EXPECT_GT(decided, 10000u);
+}
+
+}  // namespace
+}  // namespace fastccd::testing

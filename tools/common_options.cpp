@@ -1,0 +1,151 @@
+#include "common_options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <fastccd/isa.hpp>
+
+namespace fastccd::tools {
+namespace {
+
+/// A check of a number that also refuses NaN, which passes every comparison CLI11 makes.
+CLI::Validator number_check(std::string requirement, std::function<bool(double)> accept)
+{
+    return {[requirement = std::move(requirement), accept = std::move(accept)](const std::string& text) -> std::string {
+                double value = 0;
+                if (CLI::detail::lexical_cast(text, value) && accept(value)) return {};
+                return fmt::format("'{}' is not {}", text, requirement);
+            },
+            std::string{}};
+}
+
+PairKind parse_kind(const std::string& text)
+{
+    if (text == "vf") return PairKind::vertex_face;
+    if (text == "ee") return PairKind::edge_edge;
+    throw CLI::ValidationError("--kind", fmt::format("'{}' is neither vf (vertex-face) nor ee (edge-edge)", text));
+}
+
+Isa parse_isa(const std::string& text)
+{
+    const std::optional<Isa> isa = isa_from_name(text);
+    if (!isa) {
+        throw CLI::ValidationError("--isa", fmt::format("there is no instruction set '{}'; available here: {}", text,
+                                                        available_isas()));
+    }
+    if (*isa != Isa::automatic && !isa_available(*isa)) {
+        throw CLI::ValidationError(
+            "--isa", fmt::format("{} is not {}; available here: {}", text,
+                                 isa_built(*isa) ? "supported by this machine" : "part of this build", available_isas()));
+    }
+    return *isa;
+}
+
+std::size_t parse_bound(std::string_view bound, std::size_t if_absent, const std::string& range)
+{
+    if (bound.empty()) return if_absent;
+    std::size_t value = 0;
+    const char* const end = bound.data() + bound.size();
+    const auto [stop, error] = std::from_chars(bound.data(), end, value);
+    if (error != std::errc{} || stop != end) {
+        throw CLI::ValidationError("--range", fmt::format("'{}' is not A:B with pair numbers A and B", range));
+    }
+    return value;
+}
+
+}  // namespace
+
+CLI::Option* add_whole_number(CLI::App& command, const std::string& option, std::uint64_t& value, std::uint64_t least,
+                              std::uint64_t most, const std::string& description)
+{
+    const auto parse = [option, &value, least, most](const std::string& text) {
+        const char* const end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (error != std::errc{} || stop != end || value < least || value > most) {
+            throw CLI::ValidationError(option,
+                                       fmt::format("'{}' is not a whole number from {} to {}", text, least, most));
+        }
+    };
+    return command.add_option_function<std::string>(option, parse, description)->type_name("N");
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options)
+{
+    command
+        .add_option_function<std::string>(
+            "--kind", [&options](const std::string& text) { options.kind = parse_kind(text); },
+            "What the pairs are: vertex-face or edge-edge")
+        ->required()
+        ->type_name("vf|ee");
+    command
+        .add_option("--tolerance", options.narrow_phase.tolerance,
+                    "Width of the time interval in which the first contact is\nlocated; the whole step is 1")
+        ->check(number_check("a positive finite number", [](double x) { return x > 0 && std::isfinite(x); }))
+        ->type_name("T")
+        ->capture_default_str();
+    command.add_option("--t-max", options.narrow_phase.t_max, "Search for contact in [0, T], T at most 1")
+        ->check(number_check("a number above 0 and at most 1", [](double x) { return x > 0 && x <= 1; }))
+        ->type_name("T")
+        ->capture_default_str();
+    add_whole_number(command, "--threads", options.threads, 1, most_threads,
+                     "Number of threads (default: all the machine has)");
+    command
+        .add_option_function<std::string>(
+            "--isa", [&options](const std::string& text) { options.narrow_phase.isa = parse_isa(text); },
+            "Instruction set, see `fastccd isa` (default: the environment\nvariable FASTCCD_ISA, or the widest)")
+        ->type_name("NAME");
+    command.add_flag("--reference", options.narrow_phase.reference,
+                     "Answer every pair by the certified search alone: slower,\nthe same results");
+    command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots");
+    command
+        .add_option("--hits", options.hits,
+                    "Write the contacts as CSV: pair,toi, invalid pairs with nan.\n"
+                    "- is standard output, and moves the report to standard error")
+        ->type_name("OUT.csv");
+    command.add_flag("--json", options.json, "Report as one JSON object");
+    command.add_flag("--quiet", options.quiet, "No progress bar, and no report unless --json");
+}
+
+PairRange parse_range(const std::string& text, std::size_t pairs)
+{
+    const std::size_t colon = text.find(':');
+    if (colon == std::string::npos) {
+        throw CLI::ValidationError("--range", fmt::format("'{}' is not A:B with pair numbers A and B", text));
+    }
+    const std::string_view whole{text};
+    const PairRange range{.begin = parse_bound(whole.substr(0, colon), 0, text),
+                          .end = parse_bound(whole.substr(colon + 1), pairs, text)};
+    if (range.end > pairs) {
+        throw CLI::ValidationError("--range", fmt::format("{} ends beyond the last of {} pairs", text, pairs));
+    }
+    if (range.begin > range.end) {
+        throw CLI::ValidationError("--range", fmt::format("{} begins after its end, {}", text, range.end));
+    }
+    return range;
+}
+
+const char* kind_name(PairKind kind) noexcept
+{
+    return kind == PairKind::vertex_face ? "vertex-face" : "edge-edge";
+}
+
+std::string available_isas()
+{
+    std::string names;
+    for (const Isa isa : all_isas) {
+        if (!isa_available(isa)) continue;
+        if (!names.empty()) names += ", ";
+        names += name(isa);
+    }
+    return names;
+}
+
+}  // namespace fastccd::tools

@@ -1,0 +1,59 @@
+// Options that all subcommands answering pairs share.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <fastccd/options.hpp>
+
+namespace CLI {
+class App;
+class Option;
+}
+
+namespace fastccd::tools {
+
+/// No machine has more; what is beyond is a slip of the finger.
+inline constexpr std::uint64_t most_threads = 4096;
+
+struct CommonOptions {
+    PairKind kind = PairKind::vertex_face;
+    Options narrow_phase;
+    std::uint64_t threads = 0;  ///< At most most_threads; 0: as many as the machine runs at once.
+    bool parity = false;        ///< Count odd and even contacts.
+    std::string hits;           ///< Where to write the contacts; empty: nowhere.
+    bool json = false;
+    bool quiet = false;
+};
+
+/// Adds the options to a subcommand; `options` outlives the parse. Values are checked there, what
+/// machine and build offer included, so that a bad one ends in a CLI::ParseError.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// Adds an option that takes a decimal number in [least, most]. (CLI11 by itself reads 010 as 8.)
+CLI::Option* add_whole_number(CLI::App& command, const std::string& option, std::uint64_t& value, std::uint64_t least,
+                              std::uint64_t most, const std::string& description);
+
+/// Half-open range of pairs.
+struct PairRange {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+
+    [[nodiscard]] std::size_t size() const noexcept { return end - begin; }
+};
+
+/// Reads "A:B", where A left out is 0 and B left out is `pairs`. Throws CLI::ValidationError if it
+/// is none, or not within [0, pairs].
+[[nodiscard]] PairRange parse_range(const std::string& text, std::size_t pairs);
+
+/// "vertex-face" or "edge-edge".
+[[nodiscard]] const char* kind_name(PairKind kind) noexcept;
+
+/// The names of all instruction sets that can be chosen here, as "scalar, sse2, avx2".
+[[nodiscard]] std::string available_isas();
+
+/// Instruction sets in ascending width.
+inline constexpr Isa all_isas[] = {Isa::scalar, Isa::sse2, Isa::neon, Isa::avx2, Isa::avx512};
+
+}  // namespace fastccd::tools

@@ -1,0 +1,38 @@
+// The list of contacts as CSV.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+
+#include <fmt/format.h>
+
+#include <fastccd/options.hpp>
+
+#include "output_file.hpp"
+
+namespace fastccd::tools {
+
+/// Columns `pair,toi`: pairs in contact with their time of impact in 17 significant digits (which
+/// read back to the same double), invalid pairs with `nan`, in pair order. Appears on commit(): see
+/// OutputFile, also for the meaning of "-".
+class HitsFile {
+public:
+    /// Throws InputError.
+    explicit HitsFile(const std::filesystem::path& path);
+
+    /// Appends one piece of the pairs: contacts and invalid pairs, each in ascending order, numbered
+    /// from `first_pair`. Throws as OutputFile::write.
+    void append(std::span<const Contact> contacts, std::span<const std::size_t> invalid, std::size_t first_pair);
+
+    /// Throws as OutputFile::write and OutputFile::commit.
+    void commit();
+
+private:
+    void flush();
+
+    OutputFile file_;
+    fmt::memory_buffer text_;
+};
+
+}  // namespace fastccd::tools

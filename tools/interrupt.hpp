@@ -1,0 +1,21 @@
+// Ctrl-C and termination, met between chunks of work so that files and the terminal are left clean.
+#pragma once
+
+namespace fastccd::tools {
+
+/// Thrown by check_interrupt. Not a std::exception: only main may swallow it.
+struct Interrupted {
+    int signal;
+};
+
+/// The reader of our output went away (`| head`). Nothing more to say, and nobody to say it to.
+struct BrokenPipe {};
+
+/// Notes SIGINT, SIGTERM and SIGHUP for check_interrupt; a second one of a kind ends the process at
+/// once. Writing to a closed pipe becomes an error (BrokenPipe) instead of a signal.
+void install_signal_handlers();
+
+/// Throws Interrupted if a signal has come in. Call it at least every tenth of a second of work.
+void check_interrupt();
+
+}  // namespace fastccd::tools

@@ -1,0 +1,99 @@
+// The command `fastccd`.
+//
+// Exit status: 0 fine (invalid pairs included: they are answered), 1 a file or stream cannot be used,
+// 2 the command line is wrong, 128 + n ended by signal n (130 for Ctrl-C, 141 when the reader of the
+// output went away).
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "interrupt.hpp"
+
+namespace {
+
+constexpr int exit_failure = 1;
+constexpr int exit_usage = 2;
+
+/// Files opened later must not get the number of a standard stream that the caller closed: a report
+/// would be written into them.
+void open_closed_standard_streams()
+{
+    for (int descriptor = 0; descriptor < 3; ++descriptor) {
+        if (::fcntl(descriptor, F_GETFD) == -1 && errno == EBADF) (void)::open("/dev/null", O_RDWR);
+    }
+}
+
+int fail(std::string_view message)
+{
+    // Not fmt::print: it throws when standard error cannot be written, and nobody is left to be told.
+    std::fputs(fmt::format("fastccd: {}\n", message).c_str(), stderr);
+    return exit_failure;
+}
+
+/// One line: what is wrong, and where help is.
+std::string usage_error(const CLI::App* app, const CLI::Error& error)
+{
+    std::string command = "fastccd";
+    for (const CLI::App* const given : app->get_subcommands()) command += " " + given->get_name();
+    return fmt::format("fastccd: {}; see `{} --help`\n", error.what(), command);
+}
+
+constexpr const char* footer = R"(Examples:
+  fastccd random --kind vf --pairs 10000000 --parity
+  fastccd random --kind ee --pairs 1000000 --seed 7 --save pairs.npy
+  fastccd run pairs.npy --kind ee --hits hits.csv
+  fastccd run a.csv b.csv --kind vf --tolerance 1e-6 --json
+  fastccd run pairs.npy --kind ee --range 0:500000 --threads 4
+  fastccd isa
+
+Exit status: 0 all pairs answered, invalid ones by name; 1 a file cannot be used;
+2 the command line is wrong; 130 interrupted.)";
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    using namespace fastccd::tools;
+    open_closed_standard_streams();
+    install_signal_handlers();
+
+    CLI::App app{"Narrow-phase continuous collision detection: which pairs of moving vertices\n"
+                 "and faces, or of moving edges, touch during a step, and when first.",
+                 "fastccd"};
+    app.set_version_flag("--version", "fastccd " FASTCCD_VERSION);
+    // Not require_subcommand: it would say that one is missing before it says which word is none.
+    app.require_subcommand(0, 1);
+    app.callback([&app] {
+        if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+    });
+    app.footer(footer);
+    app.get_formatter()->column_width(24);
+    app.failure_message(usage_error);
+    add_random_command(app);
+    add_run_command(app);
+    add_isa_command(app);
+
+    try {
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : exit_usage;
+    } catch (const Interrupted& interrupted) {
+        return 128 + interrupted.signal;
+    } catch (const BrokenPipe&) {
+        return 128 + SIGPIPE;
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory");
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+}

@@ -1,0 +1,149 @@
+#include "narrow_phase_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include <CLI/Error.hpp>
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <fastccd/isa.hpp>
+
+#include "hits_file.hpp"
+#include "interrupt.hpp"
+#include "progress.hpp"
+#include "report_totals.hpp"
+
+namespace fastccd::tools {
+namespace {
+
+[[noreturn]] void fail(Error error)
+{
+    if (error == Error::bad_isa_environment) {
+        throw CLI::ValidationError(fmt::format("{}; available here: {}", message(error), available_isas()),
+                                   CLI::ExitCodes::ValidationError);
+    }
+    // Options are checked when they are parsed; what is left is a mistake of this program.
+    throw std::logic_error(message(error));
+}
+
+}  // namespace
+
+Isa resolve_isa(const Options& options)
+{
+    std::vector<Contact> none;
+    Summary summary;
+    const Status status = find_contacts(PairKind::vertex_face, PairView{}, options, none, nullptr, &summary);
+    if (!status.ok()) fail(status.error);
+    return summary.isa;
+}
+
+NarrowPhaseRun::NarrowPhaseRun(const CommonOptions& options, HitsFile* hits, Progress* progress)
+    : options_{options}, hits_{hits}, progress_{progress}
+{
+    totals_.summary.isa = resolve_isa(options.narrow_phase);
+    totals_.threads = tbb::this_task_arena::max_concurrency();
+}
+
+void NarrowPhaseRun::answer(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth)
+{
+    check_interrupt();
+    contacts_.clear();
+    invalid_.clear();
+    Summary part;
+    if (options_.parity) {
+        find_with_roots(pairs, part);
+    } else {
+        find(pairs, part);
+    }
+    add(part, first_pair);
+    for (const std::size_t i : invalid_) {
+        if (totals_.first_invalid.size() == most_invalid_named) break;
+        totals_.first_invalid.push_back(first_pair + i);
+    }
+    // The known answers are for the whole step.
+    if (!truth.empty() && options_.narrow_phase.t_max == 1.0) compare(truth);
+    if (hits_ != nullptr) hits_->append(contacts_, invalid_, first_pair);
+    if (progress_ != nullptr) progress_->advance(pairs.size());
+}
+
+void NarrowPhaseRun::find(const PairView& pairs, Summary& summary)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const Status status =
+        find_contacts(options_.kind, pairs, options_.narrow_phase, contacts_, &invalid_, &summary);
+    totals_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!status.ok()) fail(status.error);
+}
+
+void NarrowPhaseRun::find_with_roots(const PairView& pairs, Summary& summary)
+{
+    toi_.resize(pairs.size());
+    roots_.resize(pairs.size());
+    const auto start = std::chrono::steady_clock::now();
+    const Status status = time_of_impact(options_.kind, pairs, options_.narrow_phase, toi_, &summary, roots_);
+    totals_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!status.ok()) fail(status.error);
+    for (std::size_t i = 0; i < toi_.size(); ++i) {
+        if (std::isfinite(toi_[i])) contacts_.push_back({.pair = i, .toi = toi_[i]});
+        if (std::isnan(toi_[i])) invalid_.push_back(i);
+    }
+}
+
+void NarrowPhaseRun::add(const Summary& part, std::size_t first_pair)
+{
+    Summary& sum = totals_.summary;
+    sum.pairs += part.pairs;
+    sum.contacts += part.contacts;
+    sum.odd += part.odd;
+    sum.even += part.even;
+    sum.invalid += part.invalid;
+    sum.scalar_pairs += part.scalar_pairs;
+    // Pieces come in pair order, so that of two equal times the first stays.
+    if (part.earliest.toi < sum.earliest.toi) {
+        sum.earliest = {.pair = first_pair + part.earliest.pair, .toi = part.earliest.toi};
+    }
+}
+
+void NarrowPhaseRun::compare(std::span<const std::int8_t> truth)
+{
+    if (!totals_.truth) totals_.truth.emplace();
+    TruthTotals& totals = *totals_.truth;
+    totals.pairs += truth.size();
+    const auto true_contacts = static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
+    const auto found = static_cast<std::size_t>(
+        std::count_if(contacts_.begin(), contacts_.end(), [&](const Contact& c) { return truth[c.pair] == 1; }));
+    totals.missed += true_contacts - found;
+    totals.false_alarms += contacts_.size() - found;
+}
+
+void run_narrow_phase(const CommonOptions& options, const Question& question,
+                      const std::function<void(NarrowPhaseRun&)>& feed)
+{
+    const auto threads = static_cast<int>(options.threads);
+    // An arena alone gets no more workers than the machine has processors; the control raises that.
+    std::optional<tbb::global_control> limit;
+    if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+    tbb::task_arena arena{threads > 0 ? threads : tbb::task_arena::automatic};
+
+    std::optional<Totals> totals;
+    arena.execute([&] {
+        std::optional<HitsFile> hits;
+        if (!options.hits.empty()) hits.emplace(options.hits);
+        // Rows on a terminal are progress enough, and would run into the bar.
+        const bool rows_on_terminal = OutputFile::is_standard_output(options.hits) && ::isatty(STDOUT_FILENO) != 0;
+        Progress progress{question.pairs, !options.quiet && !rows_on_terminal};
+        NarrowPhaseRun run{options, hits ? &*hits : nullptr, &progress};
+        feed(run);
+        check_interrupt();
+        if (hits) hits->commit();
+        totals = run.totals();
+    });
+    print_report(options, question, *totals);
+}
+
+}  // namespace fastccd::tools

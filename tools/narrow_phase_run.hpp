@@ -1,0 +1,90 @@
+// The narrow phase over more pairs than one call takes: totals, contacts to a file, time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fastccd/fastccd.hpp>
+
+#include "common_options.hpp"
+
+namespace fastccd::tools {
+
+class HitsFile;
+class Progress;
+
+/// Pairs answered at a time: a multiple of 8, and so many (48 MiB of packed pairs) that threads
+/// rarely wait for the last of them, so few that Ctrl-C and the progress bar do not wait long.
+inline constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
+
+/// What is asked, for the report.
+struct Question {
+    std::string source;                  ///< The pairs' origin, for people: "10 random pairs, seed 1".
+    std::size_t pairs = 0;               ///< How many pairs run_narrow_phase is going to answer.
+    std::vector<std::string> files = {};
+    std::optional<std::uint64_t> seed = {};
+    std::optional<PairRange> range = {};  ///< Given when not all pairs of the files were asked for.
+};
+
+/// Comparison with known answers, for pairs that have one.
+struct TruthTotals {
+    std::size_t pairs = 0;
+    std::size_t missed = 0;        ///< Contact in truth, not reported.
+    std::size_t false_alarms = 0;  ///< Reported, none in truth.
+};
+
+struct Totals {
+    Summary summary;
+    std::optional<TruthTotals> truth;
+    std::vector<std::size_t> first_invalid;  ///< The first few invalid pairs.
+    double seconds = 0;                      ///< Time inside the narrow phase alone.
+    int threads = 1;
+};
+
+/// The kernels that run with these options. Throws CLI::ValidationError if FASTCCD_ISA names none.
+[[nodiscard]] Isa resolve_isa(const Options& options);
+
+/// Invalid pairs that the report names; --hits has all.
+inline constexpr std::size_t most_invalid_named = 10;
+
+/// Answers the pairs of a file, a generator or a scene piece by piece, in pair order.
+class NarrowPhaseRun {
+public:
+    /// `hits`, `progress`: may be null.
+    NarrowPhaseRun(const CommonOptions& options, HitsFile* hits, Progress* progress);
+
+    /// Answers `pairs`, numbered from `first_pair`. `truth`, when not empty, has the known answer (1:
+    /// contact in [0, 1]) of each. Throws Interrupted after a signal, InputError if --hits fails.
+    void answer(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth = {});
+
+    [[nodiscard]] const Totals& totals() const noexcept { return totals_; }
+
+private:
+    void find(const PairView& pairs, Summary& summary);
+    void find_with_roots(const PairView& pairs, Summary& summary);
+    void add(const Summary& part, std::size_t first_pair);
+    void compare(std::span<const std::int8_t> truth);
+
+    const CommonOptions& options_;
+    HitsFile* hits_;
+    Progress* progress_;
+    Totals totals_;
+    // Of the current piece, numbered from its first pair; kept to reuse their memory.
+    std::vector<Contact> contacts_;
+    std::vector<std::size_t> invalid_;
+    std::vector<double> toi_;
+    std::vector<std::uint8_t> roots_;
+};
+
+/// Runs `feed`, which calls answer() for all pairs of `question`, on the threads asked for, with
+/// progress bar and hits file; then prints the report. Nothing stays behind under the name of the hits
+/// file if any of it throws.
+void run_narrow_phase(const CommonOptions& options, const Question& question,
+                      const std::function<void(NarrowPhaseRun&)>& feed);
+
+}  // namespace fastccd::tools

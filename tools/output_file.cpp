@@ -1,0 +1,112 @@
+#include "output_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "input_error.hpp"
+#include "interrupt.hpp"
+
+namespace fastccd::tools {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, std::string_view what, int error)
+{
+    throw InputError(path, fmt::format("{}: {}", what, std::generic_category().message(error)));
+}
+
+int open_in_place(const std::filesystem::path& path)
+{
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor < 0) fail(path, "cannot be opened for writing", errno);
+    return descriptor;
+}
+
+}  // namespace
+
+void write_all(int descriptor, std::string_view bytes, const std::filesystem::path& name)
+{
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written >= 0) {
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+        } else if (errno == EINTR) {
+            check_interrupt();
+        } else if (errno == EPIPE) {
+            throw BrokenPipe{};
+        } else {
+            fail(name, "cannot be written", errno);
+        }
+    }
+}
+
+bool OutputFile::is_standard_output(const std::filesystem::path& target)
+{
+    return target == "-" || target == "/dev/stdout";
+}
+
+OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
+{
+    if (is_standard_output(target)) {
+        target_ = "standard output";
+        descriptor_ = ::dup(STDOUT_FILENO);
+        if (descriptor_ < 0) fail(target_, "cannot be opened", errno);
+        return;
+    }
+
+    struct stat existing {};
+    const bool exists = ::stat(target_.c_str(), &existing) == 0;
+    if (exists && S_ISDIR(existing.st_mode)) throw InputError(target_, "is a directory; name a file to write");
+    if (exists && !S_ISREG(existing.st_mode)) {
+        descriptor_ = open_in_place(target_);
+        return;
+    }
+    if (exists) {
+        // Renaming needs no permission on the file itself, but a write-protected file is meant to stay.
+        if (::access(target_.c_str(), W_OK) != 0) fail(target_, "cannot be overwritten", errno);
+        // A link stays a link; its file is replaced.
+        std::error_code ignored;
+        const std::filesystem::path resolved = std::filesystem::canonical(target_, ignored);
+        if (!ignored) target_ = resolved;
+    }
+
+    // Process id and counter make the name unique among running writers, O_EXCL skips what a killed
+    // process left behind; 0666 lets the umask decide, as for any new file.
+    for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
+        temporary_ = target_;
+        temporary_ += fmt::format(".{}-{}.tmp", ::getpid(), attempt);
+        descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (descriptor_ < 0 && errno != EEXIST) {
+            const int error = errno;
+            temporary_.clear();
+            fail(target_, "cannot be created", error);
+        }
+    }
+    if (exists) (void)::fchmod(descriptor_, existing.st_mode & 07777);
+}
+
+OutputFile::~OutputFile()
+{
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::commit()
+{
+    // Delayed allocation and network file systems report a full disk only here. Pipes and devices
+    // cannot be synchronised (EINVAL), which is no failure.
+    if (!temporary_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL) fail(target_, "cannot be written", errno);
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0) fail(target_, "cannot be written", errno);
+    if (temporary_.empty()) return;
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "cannot be created", errno);
+    temporary_.clear();
+}
+
+}  // namespace fastccd::tools

@@ -1,0 +1,43 @@
+// Output that is complete or absent.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace fastccd::tools {
+
+/// Writes all of `bytes` to `descriptor`. Throws InputError naming `name` when that fails,
+/// BrokenPipe when the reader is gone, Interrupted on a signal.
+void write_all(int descriptor, std::string_view bytes, const std::filesystem::path& name);
+
+/// A file that appears under its name complete or not at all: bytes go to a temporary file in the
+/// same directory, renamed over the target by commit() and removed by the destructor otherwise.
+///
+/// "-" and "/dev/stdout" are standard output; other devices and pipes are written directly, since
+/// nothing can be renamed over them.
+class OutputFile {
+public:
+    /// Opens the output. Throws InputError when it cannot be created, is a directory or is an
+    /// existing file without write permission.
+    explicit OutputFile(const std::filesystem::path& target);
+    ~OutputFile();
+
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+
+    /// True if `target` names standard output.
+    [[nodiscard]] static bool is_standard_output(const std::filesystem::path& target);
+
+    /// Appends, unbuffered: pass large pieces. Throws as write_all.
+    void write(std::string_view bytes) const { write_all(descriptor_, bytes, target_); }
+
+    /// Makes the file appear under its name. Throws InputError.
+    void commit();
+
+private:
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;  // empty: written in place, or committed
+    int descriptor_ = -1;
+};
+
+}  // namespace fastccd::tools

@@ -1,0 +1,129 @@
+#include "report_totals.hpp"
+
+#include <iterator>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include <fastccd/isa.hpp>
+
+#include "output_file.hpp"
+
+namespace fastccd::tools {
+namespace {
+
+double pairs_per_second(const Totals& totals)
+{
+    return totals.seconds > 0 ? static_cast<double>(totals.summary.pairs) / totals.seconds : 0.0;
+}
+
+/// Percentage with as many digits as tell it from 0 and 100.
+std::string share(std::size_t part, std::size_t whole)
+{
+    return whole == 0 ? "" : fmt::format("  ({:.3g} %)", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+std::string invalid_pairs(const Totals& totals)
+{
+    const std::size_t more = totals.summary.invalid - totals.first_invalid.size();
+    std::string text = fmt::format("NaN or infinity in pair{} {}", totals.summary.invalid == 1 ? "" : "s",
+                                   fmt::join(totals.first_invalid, ", "));
+    if (more > 0) text += fmt::format(" and {} more, which --hits lists", with_commas(more));
+    return text;
+}
+
+}  // namespace
+
+std::string with_commas(std::size_t number)
+{
+    std::string text = fmt::format("{}", number);
+    for (std::size_t i = text.size(); i > 3;) {
+        i -= 3;
+        text.insert(i, 1, ',');
+    }
+    return text;
+}
+
+std::string text_report(const CommonOptions& options, const Question& question, const Totals& totals)
+{
+    const Summary& sum = totals.summary;
+    fmt::memory_buffer out;
+    const auto line = [&out](std::string_view label, std::string_view text) {
+        fmt::format_to(std::back_inserter(out), "{:<17}{}\n", label, text);
+    };
+
+    line(kind_name(options.kind), question.source);
+    line("asked", fmt::format("t in [0, {}], tolerance {}{}", options.narrow_phase.t_max, options.narrow_phase.tolerance,
+                              options.narrow_phase.reference ? ", certified search on every pair" : ""));
+    line("pairs", with_commas(sum.pairs));
+    line("contacts", with_commas(sum.contacts) + share(sum.contacts, sum.pairs));
+    if (options.parity) {
+        line("  odd", with_commas(sum.odd));
+        line("  even", with_commas(sum.even));
+        line("  uncounted", with_commas(sum.contacts - sum.odd - sum.even));
+    }
+    if (sum.contacts > 0) {
+        line("earliest", fmt::format("toi {:.17g} in pair {}", sum.earliest.toi, sum.earliest.pair));
+    }
+    if (totals.truth) {
+        line("missed", fmt::format("{} of {} pairs with a known answer", with_commas(totals.truth->missed),
+                                   with_commas(totals.truth->pairs)));
+        line("false alarms", with_commas(totals.truth->false_alarms));
+    }
+    line("invalid", sum.invalid == 0 ? "0" : fmt::format("{}  ({})", with_commas(sum.invalid), invalid_pairs(totals)));
+    line("certified search", fmt::format("{} pairs{}", with_commas(sum.scalar_pairs), share(sum.scalar_pairs, sum.pairs)));
+    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {} thread{})", totals.seconds,
+                                     pairs_per_second(totals) * 1e-6, name(sum.isa), totals.threads,
+                                     totals.threads == 1 ? "" : "s"));
+    return fmt::to_string(out);
+}
+
+std::string json_report(const CommonOptions& options, const Question& question, const Totals& totals)
+{
+    using Json = nlohmann::ordered_json;
+    const Summary& sum = totals.summary;
+    Json json;
+    json["kind"] = options.kind == PairKind::vertex_face ? "vf" : "ee";
+    if (!question.files.empty()) json["files"] = question.files;
+    if (question.range) json["range"] = {question.range->begin, question.range->end};
+    if (question.seed) json["seed"] = *question.seed;
+    json["pairs"] = sum.pairs;
+    json["contacts"] = sum.contacts;
+    json["odd"] = options.parity ? Json(sum.odd) : Json(nullptr);
+    json["even"] = options.parity ? Json(sum.even) : Json(nullptr);
+    json["invalid"] = sum.invalid;
+    json["invalid_pairs"] = totals.first_invalid;
+    json["earliest"] = sum.contacts > 0 ? Json{{"toi", sum.earliest.toi}, {"pair", sum.earliest.pair}} : Json(nullptr);
+    if (totals.truth) {
+        json["truth_pairs"] = totals.truth->pairs;
+        json["missed"] = totals.truth->missed;
+        json["false_alarms"] = totals.truth->false_alarms;
+    }
+    json["seconds"] = totals.seconds;
+    json["pairs_per_second"] = pairs_per_second(totals);
+    json["isa"] = name(sum.isa);
+    json["threads"] = totals.threads;
+    json["tolerance"] = options.narrow_phase.tolerance;
+    json["t_max"] = options.narrow_phase.t_max;
+    json["reference"] = options.narrow_phase.reference;
+    json["scalar_pairs"] = sum.scalar_pairs;
+    // File names need not be UTF-8, JSON has to be.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void print_report(const CommonOptions& options, const Question& question, const Totals& totals)
+{
+    const bool to_error = OutputFile::is_standard_output(options.hits);
+    const int descriptor = to_error ? STDERR_FILENO : STDOUT_FILENO;
+    const char* const stream = to_error ? "standard error" : "standard output";
+    const bool text = !options.json && !options.quiet;
+    if (options.json) write_all(descriptor, json_report(options, question, totals), stream);
+    if (text) write_all(descriptor, text_report(options, question, totals), stream);
+    if (!text && totals.summary.invalid > 0) {
+        write_all(STDERR_FILENO, fmt::format("fastccd: warning: {}\n", invalid_pairs(totals)), "standard error");
+    }
+}
+
+}  // namespace fastccd::tools

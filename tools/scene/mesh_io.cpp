@@ -1,0 +1,154 @@
+#include "mesh_io.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <system_error>
+
+#include "../output_file.hpp"
+#include "mesh_formats.hpp"
+
+namespace fastccd::tools {
+namespace {
+
+// Into memory rather than mapped: a mesh may come through a pipe, and a file cut short while it is
+// mapped ends the process.
+std::string read_bytes(const std::filesystem::path& path)
+{
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    const auto reason = [](int error) { return std::generic_category().message(error); };
+    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+    if (!file) throw InputError(path, fmt::format("cannot be opened: {}", reason(errno)));
+
+    constexpr std::size_t first_size = std::size_t{1} << 20;
+    std::string bytes;
+    std::size_t size = 0;
+    std::size_t got = 0;
+    do {
+        if (size == bytes.size()) bytes.resize(std::max(2 * size, first_size));
+        got = std::fread(bytes.data() + size, 1, bytes.size() - size, file.get());
+        if (std::ferror(file.get()) != 0) {
+            throw InputError(path, fmt::format("cannot be read: {}", reason(errno)));
+        }
+        size += got;
+    } while (got != 0);
+    bytes.resize(size);
+    return bytes;
+}
+
+bool begins_as_ply(std::string_view content)
+{
+    return content.starts_with("ply\n") || content.starts_with("ply\r\n");
+}
+
+bool named_obj(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return extension == ".obj";
+}
+
+void append_little_endian(std::string& bytes, std::uint64_t bits, int size)
+{
+    for (int i = 0; i < size; ++i)
+        bytes += static_cast<char>(static_cast<unsigned char>(bits >> (8 * i)));
+}
+
+/// Sorts keys below 2^bits, least significant digit first: in less than half the time of std::sort
+/// on the edges of a million faces.
+void radix_sort(std::vector<std::uint64_t>& keys, int bits)
+{
+    constexpr int digit_bits = 11;  // 2048 counters stay in the first-level cache
+    constexpr std::uint64_t mask = (1U << digit_bits) - 1;
+    std::vector<std::uint64_t> sorted(keys.size());
+    for (int shift = 0; shift < bits; shift += digit_bits) {
+        std::array<std::size_t, mask + 1> place{};
+        for (const std::uint64_t key : keys) ++place[(key >> shift) & mask];
+        std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t{0});
+        for (const std::uint64_t key : keys) sorted[place[(key >> shift) & mask]++] = key;
+        keys.swap(sorted);
+    }
+}
+
+}  // namespace
+
+Mesh parse_mesh(std::string_view content, const std::filesystem::path& path)
+{
+    try {
+        if (begins_as_ply(content)) return detail::parse_ply(content);
+        if (named_obj(path)) return detail::parse_obj(content);
+    } catch (const detail::MeshError& error) {
+        throw InputError(path, error.what());
+    }
+    throw InputError(
+        path,
+        content.empty()
+            ? "the file is empty; a PLY or OBJ mesh is needed"
+            : "not a mesh that is read here: a PLY file begins with the line 'ply', the name of an "
+              "OBJ file ends in '.obj'");
+}
+
+Mesh read_mesh(const std::filesystem::path& path)
+{
+    return parse_mesh(read_bytes(path), path);
+}
+
+void write_ply(const std::filesystem::path& path, const Mesh& mesh)
+{
+    std::string bytes = fmt::format(
+        "ply\nformat binary_little_endian 1.0\n"
+        "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.positions.size() / 3, mesh.faces.size() / 3);
+    bytes.reserve(bytes.size() + 8 * mesh.positions.size() + 13 * (mesh.faces.size() / 3));
+    for (const double coordinate : mesh.positions)
+        append_little_endian(bytes, std::bit_cast<std::uint64_t>(coordinate), 8);
+    for (std::size_t corner = 0; corner < mesh.faces.size(); ++corner) {
+        if (corner % 3 == 0) bytes += '\3';
+        append_little_endian(bytes, static_cast<std::uint32_t>(mesh.faces[corner]), 4);
+    }
+
+    OutputFile file(path);
+    file.write(bytes);
+    file.commit();
+}
+
+std::vector<std::array<std::int32_t, 2>> unique_edges(const std::vector<std::int32_t>& faces)
+{
+    if (faces.empty()) return {};
+    const auto largest = static_cast<std::uint64_t>(*std::max_element(faces.begin(), faces.end()));
+    const auto index_bits = static_cast<int>(std::bit_width(largest));
+    std::vector<std::uint64_t> keys;  // low vertex above high vertex
+    keys.reserve(faces.size());
+    for (std::size_t corner = 0; corner < faces.size(); ++corner) {
+        const std::size_t next = corner % 3 == 2 ? corner - 2 : corner + 1;
+        const auto [low, high] = std::minmax(faces[corner], faces[next]);
+        if (low != high)
+            keys.push_back(static_cast<std::uint64_t>(low) << index_bits |
+                           static_cast<std::uint64_t>(high));
+    }
+    radix_sort(keys, 2 * index_bits);
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+
+    std::vector<std::array<std::int32_t, 2>> edges;
+    edges.reserve(keys.size());
+    const std::uint64_t high_mask = (std::uint64_t{1} << index_bits) - 1;
+    for (const std::uint64_t key : keys) {
+        edges.push_back({static_cast<std::int32_t>(key >> index_bits),
+                         static_cast<std::int32_t>(key & high_mask)});
+    }
+    return edges;
+}
+
+}  // namespace fastccd::tools

@@ -1,0 +1,42 @@
+# Sourced by the scripts beside it: packages, build folder, messages. Debian 12 and later; needs root or sudo
+# only when a package is missing.
+
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=${FASTCCD_BUILD:-$root/build}
+
+say() { printf '\n== %s\n' "$*"; }
+
+library_packages=(g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev)
+tool_packages=(libcli11-dev libfmt-dev nlohmann-json3-dev libgmp-dev)
+test_packages=(libgtest-dev)
+bench_packages=(libbenchmark-dev)
+
+# install_packages NAME...: installs what is missing, and says so.
+install_packages() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  local sudo=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || { echo "missing packages: ${missing[*]}; run as root, or install them with apt-get" >&2; return 1; }
+    sudo=(sudo)
+  fi
+  say "installing packages: ${missing[*]}"
+  "${sudo[@]}" apt-get update -qq
+  "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# configure_and_build OPTION... -- TARGET...
+configure_and_build() {
+  local options=() ; while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
+  [ $# -gt 0 ] && shift
+  say "configuring in $build"
+  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${options[@]}" >"$build.configure.log" 2>&1 ||
+    { cat "$build.configure.log" >&2; return 1; }
+  rm -f "$build.configure.log"
+  say "building"
+  cmake --build "$build" ${1:+--target "$@"}
+}
