@@ -96,9 +96,9 @@ FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const 
     return x.apart | y.apart | z.apart;
 }
 
-/// Never coplanar: all four coefficients beyond the bound on one side.
-template <class L>
-FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const ErrorBounds& bounds)
+/// Never coplanar: all four coefficients beyond the bound on one side. `bounds` has cubic().
+template <class L, class Bounds>
+FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const Bounds& bounds)
 {
     const L bound = broadcast<L>(bounds.cubic()) * volume;
     const L low = min(min(f.start, f.end), min(f.thrice_second, f.thrice_third));
@@ -156,11 +156,12 @@ FASTCCD_INLINE auto visit_edge_functions(const RelativeMotion<L>& r, Visit visit
     }
 }
 
-/// Apart in at least one coordinate projection over the whole interval (paper, eq. 9 and 10).
-template <PairKind kind, class L>
+/// Apart in at least one coordinate projection over the whole interval (paper, eq. 9 and 10). `bounds` has
+/// quadratic() and quadratic_sum().
+template <PairKind kind, class L, class Bounds>
 FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, const QuadraticVector<L>& q,
                                                  const QuadraticVector<L>& t, const QuadraticVector<L>& s,
-                                                 const Scales<L>& scale, const ErrorBounds& bounds)
+                                                 const Scales<L>& scale, const Bounds& bounds)
 {
     const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
         const auto range = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {

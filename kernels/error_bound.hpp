@@ -89,6 +89,25 @@ struct ErrorBounds {
         return cubic_on_interval() + (2 * cubic_blossom_levels + slack) * u;
     }
 
+    /// Bounds for certificates on [0, c] alone (earliest contact), by which lanes may conclude that the certified
+    /// search finds every leaf in [0, c] apart. The end of the motion is interpolated: its components err by rho + 3
+    /// times u X where X bounds both ends. Added is what the search's coefficients err by and its bound, together
+    /// twice its bound; for the sum of three cross products the search's bound refers to at most four times the area.
+    struct Early {
+        double cubic_, quadratic_, quadratic_sum_;
+        [[nodiscard]] FASTCCD_INLINE constexpr double cubic() const { return cubic_; }
+        [[nodiscard]] FASTCCD_INLINE constexpr double quadratic() const { return quadratic_; }
+        [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_sum() const { return quadratic_sum_; }
+    };
+    [[nodiscard]] FASTCCD_INLINE constexpr Early early() const
+    {
+        const double end_rho = rho + 3;
+        // Coefficients 3 f1 and the doubled middle ones are compared, so the search's share counts 3 and 2 times.
+        return {(54 * end_rho + 114 + slack) * u + 3 * 2 * cubic_on_interval(),
+                (8 * end_rho + 12 + slack) * u + 2 * 2 * quadratic_on_interval(),
+                (24 * end_rho + 56 + slack) * u + 2 * 2 * 4 * quadratic_on_interval()};
+    }
+
     // ---- Edge functions at one time and over its neighbourhood (projected_inclusion.hpp) ----------
 
     /// A component of r_i(s) x r_j(s) from lerped vectors; times Y Z. Lerped components err by

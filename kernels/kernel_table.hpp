@@ -7,6 +7,7 @@
 
 #include <fastccd/options.hpp>
 #include <fastccd/pair_view.hpp>
+#include <pair_source.hpp>
 #include <search_parameters.hpp>
 
 namespace fastccd {
@@ -45,13 +46,15 @@ struct TileScratch {
     alignas(64) double block[block_coordinates];  ///< A block in the native layout, where the input is not.
 };
 
-/// `count` pairs of `pairs` from `first` on; first is a multiple of tile_pairs, count at most tile_pairs.
+/// `count` pairs of the source from `first` on; first is a multiple of tile_pairs, count at most tile_pairs.
 struct TileRequest {
     PairKind kind;
-    const PairView* pairs;
+    const PairSource* source;
     std::size_t first;
     std::size_t count;
     const SearchParameters* parameters;
+    /// Pairs whose toi is certainly greater than cutoff t_max may be reported as apart; 1: none.
+    double cutoff;
 };
 
 struct KernelTable {

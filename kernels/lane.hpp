@@ -10,6 +10,8 @@
 // would keep one copy for both.
 #pragma once
 
+#include <cstddef>
+
 #ifndef FASTCCD_KERNEL_NAMESPACE
 #define FASTCCD_KERNEL_NAMESPACE portable
 #endif
@@ -59,6 +61,17 @@ struct Lane<double> {
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, double x)
     {
         if (bits != 0) *p = x;
+    }
+
+    /// Vertex records x y z x' y' z' . . that transpose_records takes at a time.
+    static constexpr unsigned transposed_records = 1;
+    /// Rows x, y, z of the records to start, start + stride, start + 2 stride; rows x', y', z' to end.
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            start[axis * stride] = records[0][axis];
+            end[axis * stride] = records[0][3 + axis];
+        }
     }
 };
 

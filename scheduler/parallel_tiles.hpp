@@ -20,17 +20,20 @@ struct TileWorker {
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);
 
-/// Runs every tile of the job and calls consume(worker, first, count) after each, on the worker's thread.
+/// Runs every tile of the job up to a cutoff, cutoff(first) (see TileRequest; negative: the tile is left out), and
+/// calls consume(worker, first, count) after each, on the worker's thread.
 /// Tiles do not depend on the number of threads. One tile runs on the caller's thread without a task.
-template <class Worker, class Consume>
-Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Consume consume)
+template <class Worker, class Cutoff, class Consume>
+Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Cutoff cutoff, Consume consume)
 {
-    const std::size_t size = job.pairs->size();
+    const std::size_t size = job.source.size;
     const std::size_t tiles = (size + tile_pairs - 1) / tile_pairs;
     const auto run = [&](std::size_t tile, Worker& worker) {
         const std::size_t first = tile * tile_pairs;
         const std::size_t count = std::min(tile_pairs, size - first);
-        run_tile(job, first, count, worker.scratch, worker.result, worker.totals);
+        const double until = cutoff(first);
+        if (until < 0.0) return;
+        run_tile(job, first, count, until, worker.scratch, worker.result, worker.totals);
         consume(worker, first, count);
     };
     if (tiles == 1) {
@@ -47,5 +50,8 @@ Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Consume 
     workers.combine_each([&](const Worker& worker) { add(summary, worker.totals); });
     return summary;
 }
+
+/// The cutoff of a dense answer.
+inline double whole_interval(std::size_t) { return 1.0; }
 
 }  // namespace fastccd

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <block_source.hpp>
 #include <certified_search.hpp>
 #include <fastccd/isa.hpp>
 
@@ -29,13 +30,29 @@ void load_pair(const PairView& pairs, std::size_t i, double* coordinates)
     }
 }
 
+void gather_pair(PairKind kind, const IndexedSource& source, std::size_t i, double* coordinates)
+{
+    std::size_t vertex[4];
+    if (kind == PairKind::vertex_face)
+        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::vertex_face>(source, i, vertex);
+    else
+        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::edge_edge>(source, i, vertex);
+    for (std::size_t point = 0; point < 4; ++point)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            coordinates[3 * point + axis] = source.records[8 * vertex[point] + axis];
+            coordinates[12 + 3 * point + axis] = source.records[8 * vertex[point] + 3 + axis];
+        }
+}
+
 void search_pair(const Job& job, std::size_t first, std::size_t i, TileResult& result)
 {
     double coordinates[pair_coordinates];
-    if (job.pairs->scalar() == PairView::Scalar::float64)
-        load_pair<double>(*job.pairs, first + i, coordinates);
+    if (job.source.view == nullptr)
+        gather_pair(job.kind, job.source.indexed, first + i, coordinates);
+    else if (job.source.view->scalar() == PairView::Scalar::float64)
+        load_pair<double>(*job.source.view, first + i, coordinates);
     else
-        load_pair<float>(*job.pairs, first + i, coordinates);
+        load_pair<float>(*job.source.view, first + i, coordinates);
     const scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
     result.toi[i] = found.toi;
     result.roots[i] = found.roots;
@@ -61,23 +78,23 @@ Status choose_kernels(Isa wanted, const KernelTable*& kernels)
 
 }  // namespace
 
-Status prepare(PairKind kind, const PairView& pairs, const Options& options, bool count_roots, Job& job)
+Status prepare(PairKind kind, const PairSource& source, const Options& options, bool count_roots, Job& job)
 {
     if (!(options.tolerance > 0.0) || std::isinf(options.tolerance)) return {Error::bad_tolerance};
     if (!(options.t_max > 0.0 && options.t_max <= 1.0)) return {Error::bad_t_max};
-    if (pairs.size() > 0 && pairs.data() == nullptr) return {Error::wrong_size};
+    if (source.view != nullptr && source.size > 0 && source.view->data() == nullptr) return {Error::wrong_size};
     const KernelTable* kernels = nullptr;
     if (!options.reference)
         if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
-    job = {kind, &pairs, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels};
+    job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels};
     return {};
 }
 
-void run_tile(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch, TileResult& result,
-              Summary& totals)
+void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch,
+              TileResult& result, Summary& totals)
 {
     if (job.kernels != nullptr) {
-        job.kernels->run_tile({job.kind, job.pairs, first, count, &job.parameters}, scratch);
+        job.kernels->run_tile({job.kind, &job.source, first, count, &job.parameters, cutoff}, scratch);
         for (std::size_t i = 0; i < count; ++i) {
             const double s = scratch.parameter[i];
             result.toi[i] = s <= 1.0 ? job.parameters.time(s) : s;

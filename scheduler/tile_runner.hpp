@@ -12,13 +12,13 @@ namespace fastccd {
 /// One validated call.
 struct Job {
     PairKind kind;
-    const PairView* pairs;
+    PairSource source;
     SearchParameters parameters;
     const KernelTable* kernels;  ///< Null: the certified search alone.
 };
 
 /// Checks options and chooses the kernels. On error the job must not be run.
-Status prepare(PairKind kind, const PairView& pairs, const Options& options, bool count_roots, Job& job);
+Status prepare(PairKind kind, const PairSource& source, const Options& options, bool count_roots, Job& job);
 
 /// Results of one tile.
 struct TileResult {
@@ -27,9 +27,9 @@ struct TileResult {
 };
 
 /// Answers `count` <= tile_pairs pairs from `first` (a multiple of tile_pairs) on; adds to `totals`
-/// everything but `pairs`.
-void run_tile(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch, TileResult& result,
-              Summary& totals);
+/// everything but `pairs`. With cutoff < 1, pairs whose toi is greater than cutoff t_max may be left out.
+void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch,
+              TileResult& result, Summary& totals);
 
 /// Adds the totals of a part to those of the whole.
 void add(Summary& whole, const Summary& part);

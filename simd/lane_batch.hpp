@@ -14,6 +14,18 @@ template <class A>
 struct BatchTraits;
 
 #if XSIMD_WITH_SSE2
+FASTCCD_INLINE void transpose_two_records(const double* const* records, double* start, double* end, std::size_t stride)
+{
+    const __m128d a0 = _mm_loadu_pd(records[0]), a1 = _mm_loadu_pd(records[0] + 2), a2 = _mm_loadu_pd(records[0] + 4);
+    const __m128d b0 = _mm_loadu_pd(records[1]), b1 = _mm_loadu_pd(records[1] + 2), b2 = _mm_loadu_pd(records[1] + 4);
+    _mm_storeu_pd(start, _mm_unpacklo_pd(a0, b0));
+    _mm_storeu_pd(start + stride, _mm_unpackhi_pd(a0, b0));
+    _mm_storeu_pd(start + 2 * stride, _mm_unpacklo_pd(a1, b1));
+    _mm_storeu_pd(end, _mm_unpackhi_pd(a1, b1));
+    _mm_storeu_pd(end + stride, _mm_unpacklo_pd(a2, b2));
+    _mm_storeu_pd(end + 2 * stride, _mm_unpackhi_pd(a2, b2));
+}
+
 template <>
 struct BatchTraits<xsimd::sse2> {
     static FASTCCD_INLINE unsigned bits(__m128d m) { return static_cast<unsigned>(_mm_movemask_pd(m)); }
@@ -23,6 +35,11 @@ struct BatchTraits<xsimd::sse2> {
     }
     static FASTCCD_INLINE __m128d min(__m128d a, __m128d b) { return _mm_min_pd(a, b); }
     static FASTCCD_INLINE __m128d max(__m128d a, __m128d b) { return _mm_max_pd(a, b); }
+    static constexpr unsigned transposed_records = 2;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        transpose_two_records(records, start, end, stride);
+    }
 };
 #endif
 
@@ -34,6 +51,23 @@ alignas(32) inline constexpr int compress_permutation[16][8] = {
     {6, 7, 0, 1, 2, 3, 4, 5}, {0, 1, 6, 7, 2, 3, 4, 5}, {2, 3, 6, 7, 0, 1, 4, 5}, {0, 1, 2, 3, 6, 7, 4, 5},
     {4, 5, 6, 7, 0, 1, 2, 3}, {0, 1, 4, 5, 6, 7, 2, 3}, {2, 3, 4, 5, 6, 7, 0, 1}, {0, 1, 2, 3, 4, 5, 6, 7}};
 
+FASTCCD_INLINE void transpose_four_records(const double* const* records, double* start, double* end, std::size_t stride)
+{
+    const __m256d a = _mm256_loadu_pd(records[0]), b = _mm256_loadu_pd(records[1]);
+    const __m256d c = _mm256_loadu_pd(records[2]), d = _mm256_loadu_pd(records[3]);
+    const __m256d ab_xz = _mm256_unpacklo_pd(a, b), ab_yx = _mm256_unpackhi_pd(a, b);
+    const __m256d cd_xz = _mm256_unpacklo_pd(c, d), cd_yx = _mm256_unpackhi_pd(c, d);
+    _mm256_storeu_pd(start, _mm256_permute2f128_pd(ab_xz, cd_xz, 0x20));
+    _mm256_storeu_pd(start + stride, _mm256_permute2f128_pd(ab_yx, cd_yx, 0x20));
+    _mm256_storeu_pd(start + 2 * stride, _mm256_permute2f128_pd(ab_xz, cd_xz, 0x31));
+    _mm256_storeu_pd(end, _mm256_permute2f128_pd(ab_yx, cd_yx, 0x31));
+    // y' z' of the first and third record, and of the second and fourth.
+    const __m256d ac = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[0] + 4)), _mm_loadu_pd(records[2] + 4), 1);
+    const __m256d bd = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[1] + 4)), _mm_loadu_pd(records[3] + 4), 1);
+    _mm256_storeu_pd(end + stride, _mm256_unpacklo_pd(ac, bd));
+    _mm256_storeu_pd(end + 2 * stride, _mm256_unpackhi_pd(ac, bd));
+}
+
 template <>
 struct BatchTraits<xsimd::avx2> {
     static FASTCCD_INLINE unsigned bits(__m256d m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
@@ -44,6 +78,11 @@ struct BatchTraits<xsimd::avx2> {
     }
     static FASTCCD_INLINE __m256d min(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
     static FASTCCD_INLINE __m256d max(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
+    static constexpr unsigned transposed_records = 4;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        transpose_four_records(records, start, end, stride);
+    }
 };
 #endif
 
@@ -58,6 +97,11 @@ struct BatchTraits<xsimd::avx512bw> {
     }
     static FASTCCD_INLINE __m512d min(__m512d a, __m512d b) { return _mm512_min_pd(a, b); }
     static FASTCCD_INLINE __m512d max(__m512d a, __m512d b) { return _mm512_max_pd(a, b); }
+    static constexpr unsigned transposed_records = 4;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        transpose_four_records(records, start, end, stride);
+    }
 };
 #endif
 
@@ -75,6 +119,18 @@ struct BatchTraits<xsimd::neon64> {
     // vminq / vmaxq propagate NaN and order the zeros; MINPD's rule is a selection.
     static FASTCCD_INLINE float64x2_t min(float64x2_t a, float64x2_t b) { return vbslq_f64(vcltq_f64(a, b), a, b); }
     static FASTCCD_INLINE float64x2_t max(float64x2_t a, float64x2_t b) { return vbslq_f64(vcgtq_f64(a, b), a, b); }
+    static constexpr unsigned transposed_records = 2;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        const float64x2_t a0 = vld1q_f64(records[0]), a1 = vld1q_f64(records[0] + 2), a2 = vld1q_f64(records[0] + 4);
+        const float64x2_t b0 = vld1q_f64(records[1]), b1 = vld1q_f64(records[1] + 2), b2 = vld1q_f64(records[1] + 4);
+        vst1q_f64(start, vzip1q_f64(a0, b0));
+        vst1q_f64(start + stride, vzip2q_f64(a0, b0));
+        vst1q_f64(start + 2 * stride, vzip1q_f64(a1, b1));
+        vst1q_f64(end, vzip2q_f64(a1, b1));
+        vst1q_f64(end + stride, vzip1q_f64(a2, b2));
+        vst1q_f64(end + 2 * stride, vzip2q_f64(a2, b2));
+    }
 };
 #endif
 
@@ -105,6 +161,12 @@ struct Lane<xsimd::batch<double, A>> {
 
     static FASTCCD_INLINE unsigned bits(Mask m) { return Traits::bits(m.data); }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, Batch x) { Traits::compress_store(p, bits, x); }
+
+    static constexpr unsigned transposed_records = Traits::transposed_records;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        Traits::transpose_records(records, start, end, stride);
+    }
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -32,11 +32,11 @@ class Pipeline {
 public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
-        Pipeline pipeline{*request.parameters, scratch};
+        Pipeline pipeline{*request.parameters, request.cutoff, scratch};
         pipeline.prepare(request.count);
         for (std::size_t i = 0; i < request.count; i += block_pairs) {
             const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
-            const double* block = native_block(*request.pairs, request.first + i, count, scratch.block);
+            const double* block = native_block<kind, L>(*request.source, request.first + i, count, scratch.block);
             for (unsigned lane = 0; lane < count; lane += width) {
                 pipeline.screen(block + lane, static_cast<double>(i + lane), static_cast<double>(request.count));
                 if (scratch.screened.size >= PairQueue::drain_at) pipeline.find_roots(false);
@@ -60,9 +60,10 @@ private:
     static constexpr int fine_steps = 3;
 
     const SearchParameters& parameters;
+    const double cutoff;
     TileScratch& scratch;
 
-    FASTCCD_INLINE Pipeline(const SearchParameters& p, TileScratch& s) : parameters{p}, scratch{s} {}
+    FASTCCD_INLINE Pipeline(const SearchParameters& p, double c, TileScratch& s) : parameters{p}, cutoff{c}, scratch{s} {}
 
     FASTCCD_INLINE void prepare(std::size_t count)
     {
@@ -104,8 +105,26 @@ private:
         const unsigned decidable = Lane<L>::bits(exists & in_range);
         for (unsigned bits = Lane<L>::bits(exists) & ~decidable; bits != 0; bits &= bits - 1)
             leave_undecided(static_cast<unsigned>(first) + static_cast<unsigned>(__builtin_ctz(bits)));
-        const unsigned kept = decidable & ~Lane<L>::bits(apart);
+        unsigned kept = decidable & ~Lane<L>::bits(apart);
+        if (kept != 0 && cutoff < 1.0) kept &= ~Lane<L>::bits(apart_until_cutoff(record));
         if (kept != 0) push(scratch.screened, kept, record);
+    }
+
+    /// The three certificates on [0, cutoff] and one leaf more, with bounds under which the certified search
+    /// finds every leaf there apart: toi is greater than the cutoff. Only the end of the motion moves; errors are
+    /// those of an interpolated end, and the scale is that of the whole motion, to which the search's bounds refer.
+    FASTCCD_INLINE LaneMask<L> apart_until_cutoff(const PairRecord<L>& record)
+    {
+        const L end = broadcast<L>(cutoff + 2 * parameters.leaf_width < 1.0 ? cutoff + 2 * parameters.leaf_width : 1.0);
+        const RelativeMotion<L> r{{record.r.start[0], record.r.start[1], record.r.start[2]},
+                                  {position(record.r, 0, end), position(record.r, 1, end), position(record.r, 2, end)}};
+        const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
+        const ErrorBounds::Early early = parameters.bounds.early();
+        const auto apart_in_projections = visit_edge_functions<kind>(
+            r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                return quadratic_certificate<kind>(p, q, t, s, record.scale, early);
+            });
+        return cubic_certificate(cubic, record.scale.volume, early) | apart_in_projections;
     }
 
     /// Takes full batches from the front of a queue, and the rest too if `all`.

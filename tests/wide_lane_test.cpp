@@ -66,6 +66,11 @@ struct Lane<Array8> {
         for (int i = 0; i < 8; ++i)
             if ((bits >> i & 1u) != 0) *p++ = x.value[i];
     }
+    static constexpr unsigned transposed_records = One::transposed_records;
+    static void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        One::transpose_records(records, start, end, stride);
+    }
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
@@ -84,11 +89,12 @@ TEST(WideLanes, DecideWhatTheCertifiedSearchDecides)
             generate(family, kind, 41, 509, pairs);
             const PairBuffer buffer = to_buffer(pairs);
             const PairView view = buffer.view();
+            const PairSource source{&view, {}, view.size()};
             Options options;
             options.reference = true;
             const Answer expected = answer(kind, view, options);
             FASTCCD_KERNEL_NAMESPACE::run_tile<FASTCCD_KERNEL_NAMESPACE::Array8>(
-                {pair_kind(kind), &view, 0, pairs.size(), &parameters}, *scratch);
+                {pair_kind(kind), &source, 0, pairs.size(), &parameters, 1.0}, *scratch);
             for (std::size_t i = 0; i < pairs.size(); ++i) {
                 if (scratch->is_undecided[i]) continue;
                 ++decided;

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include <fastccd/indexed.hpp>
 #include <fastccd/isa.hpp>
 #include <fastccd/options.hpp>
 #include <fastccd/pair_buffer.hpp>
@@ -39,5 +40,32 @@ Status time_of_impact(PairKind kind, const PairView& pairs, const Options& optio
 /// to `invalid` when given.
 Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
                      std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr);
+
+/// The first contact of all: smallest toi, ties to the smallest pair index. pair is SIZE_MAX and toi +infinity if
+/// no pair touches. Pairs that cannot beat the best so far are dropped early; the result is the same as the minimum
+/// of the dense answer, on any number of threads. Invalid pairs are counted in summary->invalid only as far as they
+/// were looked at; contacts are not counted.
+Status earliest_contact(PairKind kind, const PairView& pairs, const Options& options, Contact& earliest,
+                        Summary* summary = nullptr);
+
+// The same questions about pairs of a moving mesh, with the same bits as for packed pairs. An index out of range is
+// Error::index_out_of_range with the pair and the index in the Status, before any work.
+
+Status time_of_impact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
+                      std::span<double> toi, Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
+Status time_of_impact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
+                      std::span<double> toi, Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
+
+Status find_contacts(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
+                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid = nullptr,
+                     Summary* summary = nullptr);
+Status find_contacts(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
+                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid = nullptr,
+                     Summary* summary = nullptr);
+
+Status earliest_contact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
+                        Contact& earliest, Summary* summary = nullptr);
+Status earliest_contact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
+                        Contact& earliest, Summary* summary = nullptr);
 
 }  // namespace fastccd

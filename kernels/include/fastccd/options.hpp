@@ -64,10 +64,11 @@ enum class Error : std::uint8_t {
     index_out_of_range,    ///< an index of pair `pair` points outside its array.
 };
 
-/// Outcome of a call: `error` and, where one pair is at fault, its index.
+/// Outcome of a call: `error` and, where one pair is at fault, its number and the index it holds.
 struct Status {
     Error error = Error::none;
     std::size_t pair = std::numeric_limits<std::size_t>::max();
+    std::int64_t index = 0;
 
     [[nodiscard]] constexpr bool ok() const noexcept { return error == Error::none; }
 };

@@ -1,0 +1,116 @@
+// Pairs given as indices into a mesh that moves: what simulators hold.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+
+#include <fastccd/options.hpp>
+
+namespace fastccd {
+
+/// Candidate pair of a vertex and a face, by index.
+struct VertexFace {
+    std::int32_t vertex, face;
+    friend constexpr auto operator<=>(const VertexFace&, const VertexFace&) = default;
+};
+
+/// Candidate pair of two edges, by index.
+struct EdgeEdge {
+    std::int32_t edge_a, edge_b;
+    friend constexpr auto operator<=>(const EdgeEdge&, const EdgeEdge&) = default;
+};
+
+/// Positions of n vertices at one end of the step, where the caller holds them. float is widened exactly.
+/// Eigen n x 3 matrices: rows() for RowMajor, columns() for ColMajor (libigl's default).
+class PositionView {
+public:
+    PositionView() = default;
+
+    /// n x 3, one vertex after the other.
+    template <class T>
+    static PositionView rows(const T* data, std::size_t n)
+    {
+        return {data, data + 1, data + 2, 3, n};
+    }
+    /// n x 3, all x, then all y, then all z.
+    template <class T>
+    static PositionView columns(const T* data, std::size_t n)
+    {
+        return {data, data + n, data + 2 * n, 1, n};
+    }
+    /// Vertex i at x[i * stride], y[i * stride], z[i * stride]; stride in elements.
+    template <class T>
+    static PositionView xyz(const T* x, const T* y, const T* z, std::ptrdiff_t stride, std::size_t n)
+    {
+        return {x, y, z, stride, n};
+    }
+
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    [[nodiscard]] bool has_data() const noexcept { return axis_[0] != nullptr && axis_[1] != nullptr && axis_[2] != nullptr; }
+    /// Coordinate of vertex i along axis 0, 1 or 2.
+    [[nodiscard]] double operator()(std::size_t i, int axis) const noexcept
+    {
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(i) * stride_;
+        return is_float_ ? static_cast<double>(static_cast<const float*>(axis_[axis])[at])
+                         : static_cast<const double*>(axis_[axis])[at];
+    }
+
+private:
+    template <class T>
+    PositionView(const T* x, const T* y, const T* z, std::ptrdiff_t stride, std::size_t n)
+        : axis_{x, y, z}, stride_{stride}, size_{n}, is_float_{sizeof(T) == sizeof(float)}
+    {
+        static_assert(sizeof(T) == sizeof(float) || sizeof(T) == sizeof(double), "positions are float or double");
+    }
+
+    const void* axis_[3] = {};
+    std::ptrdiff_t stride_ = 0;
+    std::size_t size_ = 0;
+    bool is_float_ = false;
+};
+
+/// n rows of vertex indices: 3 a face, 2 an edge, in either storage order.
+struct IndexView {
+    const std::int32_t* data = nullptr;
+    std::size_t size = 0;            ///< Rows.
+    std::ptrdiff_t row_stride = 0;     ///< Elements from a row to the next,
+    std::ptrdiff_t column_stride = 0;  ///< and within a row.
+
+    static IndexView rows(const std::int32_t* data, std::size_t n, int columns) { return {data, n, columns, 1}; }
+    static IndexView columns(const std::int32_t* data, std::size_t n)
+    {
+        return {data, n, 1, static_cast<std::ptrdiff_t>(n)};
+    }
+};
+
+/// A mesh that moves linearly over the step. Copies the positions once into records of 64 bytes per vertex, which
+/// is what makes indexed pairs fast; refers to the caller's faces and edges, which must outlive it.
+class MovingMesh {
+public:
+    MovingMesh() = default;
+    /// Positions at t = 0 and t = 1 of the same vertices; faces n x 3 and edges n x 2, either may be empty.
+    /// status() tells what is wrong, if anything: wrong_size for positions of different size or missing data,
+    /// index_out_of_range with the row at fault as `pair` for faces, then edges.
+    MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges);
+
+    [[nodiscard]] Status status() const noexcept { return status_; }
+    [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
+    [[nodiscard]] const IndexView& faces() const noexcept { return faces_; }
+    [[nodiscard]] const IndexView& edges() const noexcept { return edges_; }
+    /// Records x y z at t = 0, x y z at t = 1, two unused; 64-byte aligned.
+    [[nodiscard]] const double* records() const noexcept { return records_.get(); }
+
+private:
+    struct Release {
+        void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{64}); }
+    };
+
+    std::unique_ptr<double[], Release> records_;
+    std::size_t vertex_count_ = 0;
+    IndexView faces_, edges_;
+    Status status_{Error::wrong_size};
+};
+
+}  // namespace fastccd

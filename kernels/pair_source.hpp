@@ -1,0 +1,25 @@
+// Where the pairs of a call come from, as plain data the kernels of every instruction set can read.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <fastccd/pair_view.hpp>
+
+namespace fastccd {
+
+/// Pairs of indices into a MovingMesh.
+struct IndexedSource {
+    const double* records;           ///< 8 doubles a vertex: x y z at t = 0, x y z at t = 1, two unused.
+    const std::int32_t* pairs;       ///< 2 a pair: vertex and face, or two edges.
+    const std::int32_t* primitives;  ///< Vertices of the faces or edges.
+    std::ptrdiff_t row_stride, column_stride;
+};
+
+struct PairSource {
+    const PairView* view;  ///< Packed pairs; null: `indexed`.
+    IndexedSource indexed;
+    std::size_t size;
+};
+
+}  // namespace fastccd
