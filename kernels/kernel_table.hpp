@@ -35,11 +35,12 @@ using RootQueue = LaneQueue<31>;
 
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {
-    alignas(64) double parameter[tile_pairs];  ///< s of the first contact, +infinity if there is none.
-    std::uint8_t roots[tile_pairs];            ///< Contact roots found by the lanes.
-    std::uint8_t is_undecided[tile_pairs];
-    std::uint16_t undecided[tile_pairs];       ///< Pairs of the tile left to the certified search, in any order.
-    unsigned undecided_count;
+    /// First time of contact: from the lanes the parameter s, in the end toi; +infinity if there is none.
+    alignas(64) double time[tile_pairs];
+    std::uint8_t roots[tile_pairs];            ///< Contact roots.
+    std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
+                                               ///< but contacts and undecided pairs is looked at one by one.
+    std::uint64_t is_undecided[tile_pairs / 64];
     PairQueue screened;      ///< Pairs without a linear or cubic certificate.
     RootQueue later_pieces;  ///< Second and third pieces with a sign change.
     RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.
@@ -60,7 +61,8 @@ struct TileRequest {
 struct KernelTable {
     Isa isa;
     unsigned lanes;
-    /// Fills parameter, roots, undecided and undecided_count of the scratch.
+    /// Fills time, roots, reported and is_undecided of the scratch. What the lanes found of an undecided pair is to
+    /// be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
 };
 

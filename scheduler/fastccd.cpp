@@ -61,8 +61,8 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
     tbb::combinable<TileWorker> workers;
     const Summary totals =
         for_each_tile(job, workers, whole_interval, [&](const TileWorker& worker, std::size_t first, std::size_t count) {
-            std::memcpy(toi.data() + first, worker.result.toi, count * sizeof(double));
-            if (!roots.empty()) std::memcpy(roots.data() + first, worker.result.roots, count);
+            std::memcpy(toi.data() + first, worker.scratch.time, count * sizeof(double));
+            if (!roots.empty()) std::memcpy(roots.data() + first, worker.scratch.roots, count);
         });
     if (summary != nullptr) *summary = totals;
     return {};
@@ -91,16 +91,16 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
     std::vector<TileShare> shares((pairs.source.size + tile_pairs - 1) / tile_pairs);
     tbb::combinable<CollectingWorker> workers;
     const Summary totals = for_each_tile(
-        job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t count) {
+        job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t) {
             TileShare& share = shares[first / tile_pairs];
             share = {&worker, worker.contacts.size(), 0, worker.invalid.size(), 0};
-            for (std::size_t i = 0; i < count; ++i) {
-                const double t = worker.result.toi[i];
-                if (t <= 1.0)
-                    worker.contacts.push_back({first + i, t});
-                else if (std::isnan(t))
+            for_each_bit(worker.scratch.reported, [&](std::size_t i) {
+                const double t = worker.scratch.time[i];
+                if (std::isnan(t))
                     worker.invalid.push_back(first + i);
-            }
+                else
+                    worker.contacts.push_back({first + i, t});
+            });
             share.contacts_end = worker.contacts.size();
             share.invalid_end = worker.invalid.size();
         });

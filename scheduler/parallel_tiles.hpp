@@ -15,7 +15,6 @@ namespace fastccd {
 /// Memory of one worker during one call: under 1 MiB, whatever the number of pairs.
 struct TileWorker {
     TileScratch scratch;
-    TileResult result;
     Summary totals;
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);
@@ -33,7 +32,7 @@ Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Cutoff c
         const std::size_t count = std::min(tile_pairs, size - first);
         const double until = cutoff(first);
         if (until < 0.0) return;
-        run_tile(job, first, count, until, worker.scratch, worker.result, worker.totals);
+        run_tile(job, first, count, until, worker.scratch, worker.totals);
         consume(worker, first, count);
     };
     if (tiles == 1) {

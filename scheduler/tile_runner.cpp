@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include <block_source.hpp>
 #include <certified_search.hpp>
@@ -44,7 +45,7 @@ void gather_pair(PairKind kind, const IndexedSource& source, std::size_t i, doub
         }
 }
 
-void search_pair(const Job& job, std::size_t first, std::size_t i, TileResult& result)
+void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& scratch)
 {
     double coordinates[pair_coordinates];
     if (job.source.view == nullptr)
@@ -54,8 +55,11 @@ void search_pair(const Job& job, std::size_t first, std::size_t i, TileResult& r
     else
         load_pair<float>(*job.source.view, first + i, coordinates);
     const scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
-    result.toi[i] = found.toi;
-    result.roots[i] = found.roots;
+    scratch.time[i] = found.toi;
+    scratch.roots[i] = found.roots;
+    const std::uint64_t bit = std::uint64_t{1} << i % 64;
+    std::uint64_t& word = scratch.reported[i / 64];
+    word = found.toi == std::numeric_limits<double>::infinity() ? word & ~bit : word | bit;
 }
 
 /// Isa::automatic honours FASTCCD_ISA; then the choice must be available.
@@ -90,33 +94,31 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
     return {};
 }
 
-void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch,
-              TileResult& result, Summary& totals)
+void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch, Summary& totals)
 {
     if (job.kernels != nullptr) {
         job.kernels->run_tile({job.kind, &job.source, first, count, &job.parameters, cutoff}, scratch);
-        for (std::size_t i = 0; i < count; ++i) {
-            const double s = scratch.parameter[i];
-            result.toi[i] = s <= 1.0 ? job.parameters.time(s) : s;
-            result.roots[i] = scratch.roots[i];
-        }
-        for (unsigned k = 0; k < scratch.undecided_count; ++k) search_pair(job, first, scratch.undecided[k], result);
-        totals.scalar_pairs += scratch.undecided_count;
+        for_each_bit(scratch.reported, [&](std::size_t i) { scratch.time[i] = job.parameters.time(scratch.time[i]); });
+        for_each_bit(scratch.is_undecided, [&](std::size_t i) {
+            search_pair(job, first, i, scratch);
+            ++totals.scalar_pairs;
+        });
     } else {
-        for (std::size_t i = 0; i < count; ++i) search_pair(job, first, i, result);
+        for (std::uint64_t& word : scratch.reported) word = 0;
+        for (std::size_t i = 0; i < count; ++i) search_pair(job, first, i, scratch);
         totals.scalar_pairs += count;
     }
 
-    for (std::size_t i = 0; i < count; ++i) {
-        const double toi = result.toi[i];
-        if (toi <= 1.0) {
-            ++totals.contacts;
-            if (job.parameters.count_roots && result.roots[i] != 0) ++(result.roots[i] % 2 == 1 ? totals.odd : totals.even);
-            if (toi < totals.earliest.toi) totals.earliest = {first + i, toi};
-        } else if (std::isnan(toi)) {
+    for_each_bit(scratch.reported, [&](std::size_t i) {
+        const double toi = scratch.time[i];
+        if (std::isnan(toi)) {
             ++totals.invalid;
+            return;
         }
-    }
+        ++totals.contacts;
+        if (job.parameters.count_roots && scratch.roots[i] != 0) ++(scratch.roots[i] % 2 == 1 ? totals.odd : totals.even);
+        if (toi < totals.earliest.toi) totals.earliest = {first + i, toi};
+    });
 }
 
 void add(Summary& whole, const Summary& part)

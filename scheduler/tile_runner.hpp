@@ -1,6 +1,7 @@
 // One tile from input to results: the lanes, then the certified search for what they left undecided.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 
 #include <fastccd/options.hpp>
@@ -20,16 +21,19 @@ struct Job {
 /// Checks options and chooses the kernels. On error the job must not be run.
 Status prepare(PairKind kind, const PairSource& source, const Options& options, bool count_roots, Job& job);
 
-/// Results of one tile.
-struct TileResult {
-    double toi[tile_pairs];
-    std::uint8_t roots[tile_pairs];
-};
+/// Answers `count` <= tile_pairs pairs from `first` (a multiple of tile_pairs) on, into time, roots and reported of
+/// the scratch; adds to `totals` everything but `pairs`. With cutoff < 1, pairs whose toi is greater than
+/// cutoff t_max may be left out.
+void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch, Summary& totals);
 
-/// Answers `count` <= tile_pairs pairs from `first` (a multiple of tile_pairs) on; adds to `totals`
-/// everything but `pairs`. With cutoff < 1, pairs whose toi is greater than cutoff t_max may be left out.
-void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch,
-              TileResult& result, Summary& totals);
+/// Calls visit(i) for each set bit, in order.
+template <class Visit>
+void for_each_bit(const std::uint64_t (&words)[tile_pairs / 64], Visit visit)
+{
+    for (std::size_t w = 0; w < tile_pairs / 64; ++w)
+        for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1)
+            visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
+}
 
 /// Adds the totals of a part to those of the whole.
 void add(Summary& whole, const Summary& part);

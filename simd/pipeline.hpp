@@ -33,7 +33,7 @@ public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
         Pipeline pipeline{*request.parameters, request.cutoff, scratch};
-        pipeline.prepare(request.count);
+        pipeline.prepare();
         for (std::size_t i = 0; i < request.count; i += block_pairs) {
             const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
             const double* block = native_block<kind, L>(*request.source, request.first + i, count, scratch.block);
@@ -65,26 +65,24 @@ private:
 
     FASTCCD_INLINE Pipeline(const SearchParameters& p, double c, TileScratch& s) : parameters{p}, cutoff{c}, scratch{s} {}
 
-    FASTCCD_INLINE void prepare(std::size_t count)
+    FASTCCD_INLINE void prepare()
     {
-        for (std::size_t i = 0; i < count; ++i) scratch.parameter[i] = __builtin_inf();
-        for (std::size_t i = 0; i < count; ++i) scratch.roots[i] = scratch.is_undecided[i] = 0;
-        scratch.undecided_count = 0;
+        for (std::size_t i = 0; i < tile_pairs; i += Lane<L>::width)
+            Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+        __builtin_memset(scratch.roots, 0, sizeof scratch.roots);
+        __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
+        __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
         scratch.screened.size = scratch.later_pieces.size = scratch.survivors.size = 0;
     }
 
-    FASTCCD_INLINE void leave_undecided(unsigned pair)
-    {
-        if (scratch.is_undecided[pair]) return;
-        scratch.is_undecided[pair] = 1;
-        scratch.undecided[scratch.undecided_count++] = static_cast<std::uint16_t>(pair);
-    }
+    FASTCCD_INLINE static void set_bit(std::uint64_t* words, unsigned i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
 
     FASTCCD_INLINE void leave_undecided(L pair, unsigned lanes)
     {
         alignas(64) double pairs[width];
         Lane<L>::store(pairs, pair);
-        for (; lanes != 0; lanes &= lanes - 1) leave_undecided(static_cast<unsigned>(pairs[__builtin_ctz(lanes)]));
+        for (; lanes != 0; lanes &= lanes - 1)
+            set_bit(scratch.is_undecided, static_cast<unsigned>(pairs[__builtin_ctz(lanes)]));
     }
 
     /// Length and volume certificates on the whole interval. Most lanes end here; the others are packed, so that
@@ -103,8 +101,7 @@ private:
         const LaneMask<L> in_range = in_lane_range(record.cubic, extents);
         const LaneMask<L> apart = separated | cubic_certificate(record.cubic, record.scale.volume, parameters.bounds);
         const unsigned decidable = Lane<L>::bits(exists & in_range);
-        for (unsigned bits = Lane<L>::bits(exists) & ~decidable; bits != 0; bits &= bits - 1)
-            leave_undecided(static_cast<unsigned>(first) + static_cast<unsigned>(__builtin_ctz(bits)));
+        if (const unsigned beyond = Lane<L>::bits(exists) & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
         unsigned kept = decidable & ~Lane<L>::bits(apart);
         if (kept != 0 && cutoff < 1.0) kept &= ~Lane<L>::bits(apart_until_cutoff(record));
         if (kept != 0) push(scratch.screened, kept, record);
@@ -286,8 +283,9 @@ private:
         for (unsigned bits = contact; bits != 0; bits &= bits - 1) {
             const int lane = __builtin_ctz(bits);
             const unsigned i = static_cast<unsigned>(pairs[lane]);
-            if (lefts[lane] < scratch.parameter[i]) scratch.parameter[i] = lefts[lane];
+            if (lefts[lane] < scratch.time[i]) scratch.time[i] = lefts[lane];
             ++scratch.roots[i];
+            set_bit(scratch.reported, i);
         }
     }
 };
