@@ -35,9 +35,9 @@ void gather_pair(PairKind kind, const IndexedSource& source, std::size_t i, doub
 {
     std::size_t vertex[4];
     if (kind == PairKind::vertex_face)
-        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::vertex_face>(source, i, vertex);
+        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::vertex_face, false>(source, source.pairs + 2 * i, vertex);
     else
-        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::edge_edge>(source, i, vertex);
+        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::edge_edge, false>(source, source.pairs + 2 * i, vertex);
     for (std::size_t point = 0; point < 4; ++point)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             coordinates[3 * point + axis] = source.records[8 * vertex[point] + axis];

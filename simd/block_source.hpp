@@ -36,45 +36,71 @@ FASTCCD_INLINE void widen_block(const float* data, double* block)
     for (std::size_t k = 0; k < block_coordinates; ++k) block[k] = static_cast<double>(data[k]);
 }
 
-/// Vertex indices of one pair, x0..x3.
-template <PairKind kind>
-FASTCCD_INLINE void pair_vertices(const IndexedSource& source, std::size_t pair, std::size_t (&vertex)[4])
+/// Vertex indices x0..x3 of one pair {first, second}. `contiguous`: rows follow one another without gaps.
+template <PairKind kind, bool contiguous>
+FASTCCD_INLINE void pair_vertices(const IndexedSource& source, const std::int32_t* pair, std::size_t (&vertex)[4])
 {
+    constexpr std::ptrdiff_t columns = kind == PairKind::vertex_face ? 3 : 2;
     const auto of = [&](std::int32_t primitive, int corner) FASTCCD_INLINE_LAMBDA {
-        return static_cast<std::size_t>(source.primitives[primitive * source.row_stride + corner * source.column_stride]);
+        const std::ptrdiff_t at = contiguous ? primitive * columns + corner
+                                             : primitive * source.row_stride + corner * source.column_stride;
+        return static_cast<std::size_t>(source.primitives[at]);
     };
-    const std::int32_t first = source.pairs[2 * pair], second = source.pairs[2 * pair + 1];
     if constexpr (kind == PairKind::vertex_face) {
-        vertex[0] = static_cast<std::size_t>(first);
-        vertex[1] = of(second, 0);
-        vertex[2] = of(second, 1);
-        vertex[3] = of(second, 2);
+        vertex[0] = static_cast<std::size_t>(pair[0]);
+        vertex[1] = of(pair[1], 0);
+        vertex[2] = of(pair[1], 1);
+        vertex[3] = of(pair[1], 2);
     } else {
-        vertex[0] = of(first, 0);
-        vertex[1] = of(first, 1);
-        vertex[2] = of(second, 0);
-        vertex[3] = of(second, 1);
+        vertex[0] = of(pair[0], 0);
+        vertex[1] = of(pair[0], 1);
+        vertex[2] = of(pair[1], 0);
+        vertex[3] = of(pair[1], 1);
     }
 }
 
-/// Whole vertex records, transposed in registers. Lanes past `count` repeat the last pair.
-template <PairKind kind, class Batch>
-FASTCCD_INLINE void gather_block(const IndexedSource& source, std::size_t first, std::size_t count, double* block)
+template <PairKind kind>
+FASTCCD_INLINE bool rows_are_contiguous(const IndexedSource& source)
+{
+    return source.column_stride == 1 && source.row_stride == (kind == PairKind::vertex_face ? 3 : 2);
+}
+
+inline constexpr std::size_t vertex_record_size = 8;
+
+/// 8 pairs of indices: whole vertex records, transposed in registers.
+template <PairKind kind, class Batch, bool contiguous>
+FASTCCD_INLINE void gather_records(const IndexedSource& source, const std::int32_t* pairs, double* block)
 {
     constexpr unsigned group = Lane<Batch>::transposed_records;
-    constexpr std::size_t record_size = 8;
     for (unsigned lane = 0; lane < block_pairs; lane += group) {
         const double* records[4][group];
         for (unsigned k = 0; k < group; ++k) {
-            const std::size_t i = lane + k < count ? lane + k : count - 1;
             std::size_t vertex[4];
-            pair_vertices<kind>(source, first + i, vertex);
-            for (int point = 0; point < 4; ++point) records[point][k] = source.records + vertex[point] * record_size;
+            pair_vertices<kind, contiguous>(source, pairs + 2 * (lane + k), vertex);
+            for (int point = 0; point < 4; ++point)
+                records[point][k] = source.records + vertex[point] * vertex_record_size;
         }
         for (int point = 0; point < 4; ++point)
             Lane<Batch>::transpose_records(records[point], block + 3 * point * block_pairs + lane,
                                            block + (12 + 3 * point) * block_pairs + lane, block_pairs);
     }
+}
+
+/// Lanes past `count` repeat the last pair.
+template <PairKind kind, class Batch>
+FASTCCD_INLINE void gather_block(const IndexedSource& source, std::size_t first, std::size_t count, double* block)
+{
+    const std::int32_t* pairs = source.pairs + 2 * first;
+    std::int32_t padded[2 * block_pairs];
+    if (count < block_pairs) {
+        for (std::size_t lane = 0; lane < block_pairs; ++lane)
+            for (std::size_t k = 0; k < 2; ++k) padded[2 * lane + k] = pairs[2 * (lane < count ? lane : count - 1) + k];
+        pairs = padded;
+    }
+    if (rows_are_contiguous<kind>(source))
+        gather_records<kind, Batch, true>(source, pairs, block);
+    else
+        gather_records<kind, Batch, false>(source, pairs, block);
 }
 
 /// Blocks ahead of the one being read that are asked for: memory latency over the time one block takes.
