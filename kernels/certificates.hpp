@@ -71,18 +71,18 @@ struct LinearCertificate {
 /// Strict separation along one axis over the whole interval.
 template <PairKind kind, class L>
 FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>& start, const AxisComponents<L>& end,
-                                                         const ErrorBounds& bounds)
+                                                         const CertificateBounds& bounds)
 {
     const AxisGap<L> s = axis_gap<kind>(start), e = axis_gap<kind>(end);
     const L zero = broadcast<L>(0.0);
     const L extent = max(max(s.largest, e.largest), zero - min(s.smallest, e.smallest));
-    const L bound = broadcast<L>(bounds.linear()) * extent;
+    const L bound = broadcast<L>(bounds.linear) * extent;
     return {less(bound, min(s.above, e.above)) | less(max(s.below, e.below), zero - bound), extent};
 }
 
 /// All axes at once; the extents come with it for free.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const ErrorBounds& bounds,
+FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const CertificateBounds& bounds,
                                               Extents<L>& extents)
 {
     const auto along = [&](auto component) FASTCCD_INLINE_LAMBDA {
@@ -96,11 +96,11 @@ FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const 
     return x.apart | y.apart | z.apart;
 }
 
-/// Never coplanar: all four coefficients beyond the bound on one side. `bounds` has cubic().
-template <class L, class Bounds>
-FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const Bounds& bounds)
+/// Never coplanar: all four coefficients beyond the bound on one side.
+template <class L>
+FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const CertificateBounds& bounds)
 {
-    const L bound = broadcast<L>(bounds.cubic()) * volume;
+    const L bound = broadcast<L>(bounds.cubic) * volume;
     const L low = min(min(f.start, f.end), min(f.thrice_second, f.thrice_third));
     const L high = max(max(f.start, f.end), max(f.thrice_second, f.thrice_third));
     return less(bound, low) | less(high, broadcast<L>(0.0) - bound);
@@ -156,20 +156,19 @@ FASTCCD_INLINE auto visit_edge_functions(const RelativeMotion<L>& r, Visit visit
     }
 }
 
-/// Apart in at least one coordinate projection over the whole interval (paper, eq. 9 and 10). `bounds` has
-/// quadratic() and quadratic_sum().
-template <PairKind kind, class L, class Bounds>
+/// Apart in at least one coordinate projection over the whole interval (paper, eq. 9 and 10).
+template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, const QuadraticVector<L>& q,
                                                  const QuadraticVector<L>& t, const QuadraticVector<L>& s,
-                                                 const Scales<L>& scale, const Bounds& bounds)
+                                                 const Scales<L>& scale, const CertificateBounds& bounds)
 {
     const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
         const auto range = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
             return sign_range(component(v.start), component(v.twice_middle), component(v.end));
         };
         return apart_in_projection<kind, L>(range(p), range(q), range(t), range(s),
-                                            broadcast<L>(bounds.quadratic()) * area,
-                                            broadcast<L>(bounds.quadratic_sum()) * area);
+                                            broadcast<L>(bounds.quadratic) * area,
+                                            broadcast<L>(bounds.quadratic_sum) * area);
     };
     return along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz) |
            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx) |

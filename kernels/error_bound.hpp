@@ -16,6 +16,12 @@
 
 namespace fastccd {
 
+/// What the three certificates compare with; see the functions of the same names in ErrorBounds. Evaluated once
+/// per tile rather than in every batch.
+struct CertificateBounds {
+    double cubic, quadratic, quadratic_sum, linear;
+};
+
 /// Bounds of one call; they depend on t_max alone. All are factors that multiply u times a product
 /// of extents, u included: |computed - exact| <= bound * product.
 struct ErrorBounds {
@@ -93,19 +99,19 @@ struct ErrorBounds {
     /// search finds every leaf in [0, c] apart. The end of the motion is interpolated: its components err by rho + 3
     /// times u X where X bounds both ends. Added is what the search's coefficients err by and its bound, together
     /// twice its bound; for the sum of three cross products the search's bound refers to at most four times the area.
-    struct Early {
-        double cubic_, quadratic_, quadratic_sum_;
-        [[nodiscard]] FASTCCD_INLINE constexpr double cubic() const { return cubic_; }
-        [[nodiscard]] FASTCCD_INLINE constexpr double quadratic() const { return quadratic_; }
-        [[nodiscard]] FASTCCD_INLINE constexpr double quadratic_sum() const { return quadratic_sum_; }
-    };
-    [[nodiscard]] FASTCCD_INLINE constexpr Early early() const
+    [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds early() const
     {
         const double end_rho = rho + 3;
         // Coefficients 3 f1 and the doubled middle ones are compared, so the search's share counts 3 and 2 times.
         return {(54 * end_rho + 114 + slack) * u + 3 * 2 * cubic_on_interval(),
                 (8 * end_rho + 12 + slack) * u + 2 * 2 * quadratic_on_interval(),
-                (24 * end_rho + 56 + slack) * u + 2 * 2 * 4 * quadratic_on_interval()};
+                (24 * end_rho + 56 + slack) * u + 2 * 2 * 4 * quadratic_on_interval(), linear()};
+    }
+
+    /// The bounds of the certificates on the whole interval.
+    [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds certificates() const
+    {
+        return {cubic(), quadratic(), quadratic_sum(), linear()};
     }
 
     // ---- Edge functions at one time and over its neighbourhood (projected_inclusion.hpp) ----------

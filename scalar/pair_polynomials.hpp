@@ -26,14 +26,15 @@ public:
     PairPolynomials(const double* coordinates, const SearchParameters& parameters)
         : r{scaled_relative_motion(coordinates, parameters.t_max)}, bounds{parameters.bounds}
     {
-        const LaneMask<double> separated = linear_certificate<kind>(r, bounds, extents);
+        const CertificateBounds whole = bounds.certificates();
+        const LaneMask<double> separated = linear_certificate<kind>(r, whole, extents);
         scale = scales(extents);
         const CoplanarityCubic<double> f = coplanarity_cubic(r, cross_product(r, 0, 1));
         cubic = bernstein(f);
         coplanarity_bound = scalar::cubic_bound(r, bounds.cubic_on_interval() * scale.volume, bounds);
         visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
-            apart_throughout = (separated | cubic_certificate(f, scale.volume, bounds) |
-                                quadratic_certificate<kind>(p, q, t, s, scale, bounds)).value;
+            apart_throughout = (separated | cubic_certificate(f, scale.volume, whole) |
+                                quadratic_certificate<kind>(p, q, t, s, scale, whole)).value;
             set_edge(0, p, cross_product_magnitude(r, 0, 1), scale);
             set_edge(1, q, cross_product_magnitude(r, 1, 2), scale);
             set_edge(2, t, cross_product_magnitude(r, 2, 0), scale);
@@ -43,7 +44,7 @@ public:
             // rounding of the sum that the lanes form.
             const RelativeMotion<double> from_x1 = scaled_relative_motion(coordinates, parameters.t_max, 1);
             Extents<double> extents_from_x1;
-            linear_certificate<kind>(from_x1, bounds, extents_from_x1);
+            linear_certificate<kind>(from_x1, whole, extents_from_x1);
             set_edge(3, cross_product(from_x1, 1, 2), cross_product_magnitude(from_x1, 1, 2), scales(extents_from_x1));
         }
     }

@@ -62,6 +62,12 @@ void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& 
     word = found.toi == std::numeric_limits<double>::infinity() ? word & ~bit : word | bit;
 }
 
+/// Ties go to the smaller index: a worker may see tiles in any order.
+void keep_earlier(Contact& best, const Contact& other)
+{
+    if (other.toi < best.toi || (other.toi == best.toi && other.pair < best.pair)) best = other;
+}
+
 /// Isa::automatic honours FASTCCD_ISA; then the choice must be available.
 Status choose_kernels(Isa wanted, const KernelTable*& kernels)
 {
@@ -117,7 +123,7 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
         }
         ++totals.contacts;
         if (job.parameters.count_roots && scratch.roots[i] != 0) ++(scratch.roots[i] % 2 == 1 ? totals.odd : totals.even);
-        if (toi < totals.earliest.toi) totals.earliest = {first + i, toi};
+        keep_earlier(totals.earliest, {first + i, toi});
     });
 }
 
@@ -128,8 +134,7 @@ void add(Summary& whole, const Summary& part)
     whole.even += part.even;
     whole.invalid += part.invalid;
     whole.scalar_pairs += part.scalar_pairs;
-    const Contact &a = whole.earliest, &b = part.earliest;
-    if (b.toi < a.toi || (b.toi == a.toi && b.pair < a.pair)) whole.earliest = b;
+    keep_earlier(whole.earliest, part.earliest);
 }
 
 }  // namespace fastccd

@@ -38,7 +38,7 @@ public:
             const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
             const double* block = native_block<kind, L>(*request.source, request.first + i, count, scratch.block);
             for (unsigned lane = 0; lane < count; lane += width) {
-                pipeline.screen(block + lane, static_cast<double>(i + lane), static_cast<double>(request.count));
+                pipeline.screen(block + lane, static_cast<double>(i + lane), all_lanes(request.count - i - lane));
                 if (scratch.screened.size >= PairQueue::drain_at) pipeline.find_roots(false);
             }
         }
@@ -57,13 +57,17 @@ private:
     static constexpr double coarse_bracket = 0x1p-8;
     static constexpr double fine_bracket = 0x1p-16;
     static constexpr int coarse_steps = 2;
-    static constexpr int fine_steps = 3;
+    static constexpr int fine_steps = 4;
 
     const SearchParameters& parameters;
+    const CertificateBounds whole, early;
     const double cutoff;
     TileScratch& scratch;
 
-    FASTCCD_INLINE Pipeline(const SearchParameters& p, double c, TileScratch& s) : parameters{p}, cutoff{c}, scratch{s} {}
+    FASTCCD_INLINE Pipeline(const SearchParameters& p, double c, TileScratch& s)
+        : parameters{p}, whole{p.bounds.certificates()}, early{p.bounds.early()}, cutoff{c}, scratch{s}
+    {
+    }
 
     FASTCCD_INLINE void prepare()
     {
@@ -73,6 +77,12 @@ private:
         __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
         __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
         scratch.screened.size = scratch.later_pieces.size = scratch.survivors.size = 0;
+    }
+
+    /// Bits of a batch of which `left` lanes are in use.
+    FASTCCD_INLINE static unsigned all_lanes(std::size_t left)
+    {
+        return left >= width ? (1u << width) - 1 : (1u << left) - 1;
     }
 
     FASTCCD_INLINE static void set_bit(std::uint64_t* words, unsigned i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
@@ -87,21 +97,20 @@ private:
 
     /// Length and volume certificates on the whole interval. Most lanes end here; the others are packed, so that
     /// the costlier area certificate runs on full batches.
-    FASTCCD_INLINE void screen(const double* coordinates, double first, double count)
+    FASTCCD_INLINE void screen(const double* coordinates, double first, unsigned lanes)
     {
         PairRecord<L> record;
         record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
         Extents<L> extents;
-        const LaneMask<L> separated = linear_certificate<kind>(record.r, parameters.bounds, extents);
+        const LaneMask<L> separated = linear_certificate<kind>(record.r, whole, extents);
         record.scale = scales(extents);
         record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
         record.pair = broadcast<L>(first) + Lane<L>::lane_number();
 
-        const LaneMask<L> exists = less(record.pair, broadcast<L>(count));
         const LaneMask<L> in_range = in_lane_range(record.cubic, extents);
-        const LaneMask<L> apart = separated | cubic_certificate(record.cubic, record.scale.volume, parameters.bounds);
-        const unsigned decidable = Lane<L>::bits(exists & in_range);
-        if (const unsigned beyond = Lane<L>::bits(exists) & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
+        const LaneMask<L> apart = separated | cubic_certificate(record.cubic, record.scale.volume, whole);
+        const unsigned decidable = lanes & Lane<L>::bits(in_range);
+        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
         unsigned kept = decidable & ~Lane<L>::bits(apart);
         if (kept != 0 && cutoff < 1.0) kept &= ~Lane<L>::bits(apart_until_cutoff(record));
         if (kept != 0) push(scratch.screened, kept, record);
@@ -116,7 +125,6 @@ private:
         const RelativeMotion<L> r{{record.r.start[0], record.r.start[1], record.r.start[2]},
                                   {position(record.r, 0, end), position(record.r, 1, end), position(record.r, 2, end)}};
         const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
-        const ErrorBounds::Early early = parameters.bounds.early();
         const auto apart_in_projections = visit_edge_functions<kind>(
             r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
                 return quadratic_certificate<kind>(p, q, t, s, record.scale, early);
@@ -131,9 +139,8 @@ private:
         PairRecord<L> record;
         unsigned done = 0;
         for (; done < queue.size && (all || queue.size - done >= width); done += width) {
-            const unsigned left = queue.size - done;
             read(queue, done, record);
-            stage(record, left >= width ? (1u << width) - 1 : (1u << left) - 1);
+            stage(record, all_lanes(queue.size - done));
         }
         drop_front(queue, done);
     }
@@ -144,7 +151,7 @@ private:
         drain(scratch.screened, all, [&](PairRecord<L>& record, unsigned lanes) FASTCCD_INLINE_LAMBDA {
             const auto apart = visit_edge_functions<kind>(
                 record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                    return quadratic_certificate<kind>(p, q, t, s, record.scale, parameters.bounds);
+                    return quadratic_certificate<kind>(p, q, t, s, record.scale, whole);
                 });
             lanes &= ~Lane<L>::bits(apart);
             if (lanes != 0) find_roots(record, lanes);

@@ -21,7 +21,7 @@ namespace fastccd::tools {
 namespace {
 
 struct RandomOptions {
-    CommonOptions common;
+    PairOptions common;
     std::uint64_t pairs = 10'000'000;
     std::uint64_t seed = 1;
     std::string save;
@@ -72,7 +72,7 @@ void add_random_command(CLI::App& app)
             return OutputFile::is_standard_output(path) ? "the report goes to standard output; name a file" : "";
         })
         ->type_name("OUT.npy");
-    add_common_options(*command, options->common);
+    add_pair_options(*command, options->common);
     command->callback([options] { random_command(*options); });
 }
 

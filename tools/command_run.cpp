@@ -1,8 +1,6 @@
-#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -19,26 +17,15 @@ namespace fastccd::tools {
 namespace {
 
 struct RunOptions {
-    CommonOptions common;
+    PairOptions common;
     std::vector<std::string> files;
     std::string range;
     bool round = false;
 };
 
-/// The hits would take the place of the pairs.
-void refuse_overwriting_input(const RunOptions& options)
-{
-    for (const std::string& file : options.files) {
-        std::error_code not_both_exist;
-        if (std::filesystem::equivalent(options.common.hits, file, not_both_exist)) {
-            throw CLI::ValidationError("--hits", fmt::format("{} is an input", options.common.hits));
-        }
-    }
-}
-
 void run_command(const RunOptions& options)
 {
-    refuse_overwriting_input(options);
+    refuse_overwriting_input(options.common, options.files);
     const PairFiles files{options.files, options.round ? Rounding::nearest : Rounding::exact_only};
     PairRange range{.begin = 0, .end = files.size()};
     if (!options.range.empty()) range = parse_range(options.range, files.size());
@@ -80,7 +67,7 @@ void add_run_command(CLI::App& app)
                      "Only pairs A to B-1 of all files; pairs keep their numbers")
         ->type_name("A:B");
     command->add_flag("--round", options->round, "Take the nearest double where a rational is none");
-    add_common_options(*command, options->common);
+    add_pair_options(*command, options->common);
     command->callback([options] { run_command(*options); });
 }
 

@@ -13,6 +13,12 @@ void add_random_command(CLI::App& app);
 /// `fastccd run`: the pairs in files.
 void add_run_command(CLI::App& app);
 
+/// `fastccd scene`: all candidate pairs of the steps between mesh frames.
+void add_scene_command(CLI::App& app);
+
+/// `fastccd make-scene`: frames for those who have none.
+void add_make_scene_command(CLI::App& app);
+
 /// `fastccd isa`: instruction sets of this build and machine.
 void add_isa_command(CLI::App& app);
 

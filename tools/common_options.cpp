@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -77,14 +78,8 @@ CLI::Option* add_whole_number(CLI::App& command, const std::string& option, std:
     return command.add_option_function<std::string>(option, parse, description)->type_name("N");
 }
 
-void add_common_options(CLI::App& command, CommonOptions& options)
+void add_search_options(CLI::App& command, CommonOptions& options)
 {
-    command
-        .add_option_function<std::string>(
-            "--kind", [&options](const std::string& text) { options.kind = parse_kind(text); },
-            "What the pairs are: vertex-face or edge-edge")
-        ->required()
-        ->type_name("vf|ee");
     command
         .add_option("--tolerance", options.narrow_phase.tolerance,
                     "Width of the time interval in which the first contact is\nlocated; the whole step is 1")
@@ -104,14 +99,41 @@ void add_common_options(CLI::App& command, CommonOptions& options)
         ->type_name("NAME");
     command.add_flag("--reference", options.narrow_phase.reference,
                      "Answer every pair by the certified search alone: slower,\nthe same results");
-    command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots");
+}
+
+void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns)
+{
     command
         .add_option("--hits", options.hits,
-                    "Write the contacts as CSV: pair,toi, invalid pairs with nan.\n"
-                    "- is standard output, and moves the report to standard error")
+                    fmt::format("Write the contacts as CSV: {}.\n"
+                                "- is standard output, and moves the report to standard error",
+                                hits_columns))
         ->type_name("OUT.csv");
     command.add_flag("--json", options.json, "Report as one JSON object");
     command.add_flag("--quiet", options.quiet, "No progress bar, and no report unless --json");
+}
+
+void add_pair_options(CLI::App& command, PairOptions& options)
+{
+    command
+        .add_option_function<std::string>(
+            "--kind", [&options](const std::string& text) { options.kind = parse_kind(text); },
+            "What the pairs are: vertex-face or edge-edge")
+        ->required()
+        ->type_name("vf|ee");
+    add_search_options(command, options);
+    command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots");
+    add_report_options(command, options, "pair,toi, invalid pairs with nan");
+}
+
+void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs)
+{
+    for (const std::string& input : inputs) {
+        std::error_code not_both_exist;
+        if (std::filesystem::equivalent(options.hits, input, not_both_exist)) {
+            throw CLI::ValidationError("--hits", fmt::format("{} is an input", options.hits));
+        }
+    }
 }
 
 PairRange parse_range(const std::string& text, std::size_t pairs)

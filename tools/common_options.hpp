@@ -1,9 +1,10 @@
-// Options that all subcommands answering pairs share.
+// Options that subcommands share.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <fastccd/options.hpp>
 
@@ -18,18 +19,33 @@ namespace fastccd::tools {
 inline constexpr std::uint64_t most_threads = 4096;
 
 struct CommonOptions {
-    PairKind kind = PairKind::vertex_face;
     Options narrow_phase;
     std::uint64_t threads = 0;  ///< At most most_threads; 0: as many as the machine runs at once.
-    bool parity = false;        ///< Count odd and even contacts.
     std::string hits;           ///< Where to write the contacts; empty: nowhere.
     bool json = false;
     bool quiet = false;
 };
 
-/// Adds the options to a subcommand; `options` outlives the parse. Values are checked there, what
-/// machine and build offer included, so that a bad one ends in a CLI::ParseError.
-void add_common_options(CLI::App& command, CommonOptions& options);
+/// Of the subcommands that answer pairs of one kind, given as coordinates.
+struct PairOptions : CommonOptions {
+    PairKind kind = PairKind::vertex_face;
+    bool parity = false;  ///< Count odd and even contacts.
+};
+
+// Each of these adds options to a subcommand; `options` outlives the parse. Values are checked
+// there, what machine and build offer included, so that a bad one ends in a CLI::ParseError.
+
+/// How to search: tolerance, t_max, threads, instruction set, reference.
+void add_search_options(CLI::App& command, CommonOptions& options);
+
+/// What to tell: hits, whose description ends in `hits_columns`, json, quiet.
+void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns);
+
+/// All options of PairOptions.
+void add_pair_options(CLI::App& command, PairOptions& options);
+
+/// Throws CLI::ValidationError if the hits would take the place of one of `inputs`.
+void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs);
 
 /// Adds an option that takes a decimal number in [least, most]. (CLI11 by itself reads 010 as 8.)
 CLI::Option* add_whole_number(CLI::App& command, const std::string& option, std::uint64_t& value, std::uint64_t least,

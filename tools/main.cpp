@@ -53,9 +53,12 @@ constexpr const char* footer = R"(Examples:
   fastccd run pairs.npy --kind ee --hits hits.csv
   fastccd run a.csv b.csv --kind vf --tolerance 1e-6 --json
   fastccd run pairs.npy --kind ee --range 0:500000 --threads 4
+  fastccd make-scene cloth-ball --size 100 --frames 10 cloth/
+  fastccd scene cloth/frame_*.ply --hits contacts.csv
+  fastccd scene a.obj b.obj --save-pairs pairs/ --json
   fastccd isa
 
-Exit status: 0 all pairs answered, invalid ones by name; 1 a file cannot be used;
+Exit status: 0 all pairs answered, invalid input by name; 1 a file cannot be used;
 2 the command line is wrong; 130 interrupted.)";
 
 }  // namespace
@@ -80,6 +83,8 @@ int main(int argc, char** argv)
     app.failure_message(usage_error);
     add_random_command(app);
     add_run_command(app);
+    add_scene_command(app);
+    add_make_scene_command(app);
     add_isa_command(app);
 
     try {

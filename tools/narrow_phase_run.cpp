@@ -7,7 +7,6 @@
 
 #include <CLI/Error.hpp>
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
@@ -17,32 +16,30 @@
 #include "interrupt.hpp"
 #include "progress.hpp"
 #include "report_totals.hpp"
+#include "threads.hpp"
 
 namespace fastccd::tools {
-namespace {
 
-[[noreturn]] void fail(Error error)
+void throw_unless_ok(const Status& status)
 {
-    if (error == Error::bad_isa_environment) {
-        throw CLI::ValidationError(fmt::format("{}; available here: {}", message(error), available_isas()),
+    if (status.ok()) return;
+    if (status.error == Error::bad_isa_environment) {
+        throw CLI::ValidationError(fmt::format("{}; available here: {}", message(status.error), available_isas()),
                                    CLI::ExitCodes::ValidationError);
     }
-    // Options are checked when they are parsed; what is left is a mistake of this program.
-    throw std::logic_error(message(error));
+    throw std::logic_error(message(status.error));
 }
-
-}  // namespace
 
 Isa resolve_isa(const Options& options)
 {
     std::vector<Contact> none;
     Summary summary;
     const Status status = find_contacts(PairKind::vertex_face, PairView{}, options, none, nullptr, &summary);
-    if (!status.ok()) fail(status.error);
+    throw_unless_ok(status);
     return summary.isa;
 }
 
-NarrowPhaseRun::NarrowPhaseRun(const CommonOptions& options, HitsFile* hits, Progress* progress)
+NarrowPhaseRun::NarrowPhaseRun(const PairOptions& options, HitsFile* hits, Progress* progress)
     : options_{options}, hits_{hits}, progress_{progress}
 {
     totals_.summary.isa = resolve_isa(options.narrow_phase);
@@ -77,7 +74,7 @@ void NarrowPhaseRun::find(const PairView& pairs, Summary& summary)
     const Status status =
         find_contacts(options_.kind, pairs, options_.narrow_phase, contacts_, &invalid_, &summary);
     totals_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!status.ok()) fail(status.error);
+    throw_unless_ok(status);
 }
 
 void NarrowPhaseRun::find_with_roots(const PairView& pairs, Summary& summary)
@@ -87,7 +84,7 @@ void NarrowPhaseRun::find_with_roots(const PairView& pairs, Summary& summary)
     const auto start = std::chrono::steady_clock::now();
     const Status status = time_of_impact(options_.kind, pairs, options_.narrow_phase, toi_, &summary, roots_);
     totals_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!status.ok()) fail(status.error);
+    throw_unless_ok(status);
     for (std::size_t i = 0; i < toi_.size(); ++i) {
         if (std::isfinite(toi_[i])) contacts_.push_back({.pair = i, .toi = toi_[i]});
         if (std::isnan(toi_[i])) invalid_.push_back(i);
@@ -121,17 +118,11 @@ void NarrowPhaseRun::compare(std::span<const std::int8_t> truth)
     totals.false_alarms += contacts_.size() - found;
 }
 
-void run_narrow_phase(const CommonOptions& options, const Question& question,
+void run_narrow_phase(const PairOptions& options, const Question& question,
                       const std::function<void(NarrowPhaseRun&)>& feed)
 {
-    const auto threads = static_cast<int>(options.threads);
-    // An arena alone gets no more workers than the machine has processors; the control raises that.
-    std::optional<tbb::global_control> limit;
-    if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
-    tbb::task_arena arena{threads > 0 ? threads : tbb::task_arena::automatic};
-
     std::optional<Totals> totals;
-    arena.execute([&] {
+    on_threads(options.threads, [&] {
         std::optional<HitsFile> hits;
         if (!options.hits.empty()) hits.emplace(options.hits);
         // Rows on a terminal are progress enough, and would run into the bar.

@@ -46,6 +46,10 @@ struct Totals {
     int threads = 1;
 };
 
+/// Throws CLI::ValidationError if FASTCCD_ISA is at fault, std::logic_error for any other error: options
+/// are checked when they are parsed, and the program's own arrays fit each other.
+void throw_unless_ok(const Status& status);
+
 /// The kernels that run with these options. Throws CLI::ValidationError if FASTCCD_ISA names none.
 [[nodiscard]] Isa resolve_isa(const Options& options);
 
@@ -56,7 +60,7 @@ inline constexpr std::size_t most_invalid_named = 10;
 class NarrowPhaseRun {
 public:
     /// `hits`, `progress`: may be null.
-    NarrowPhaseRun(const CommonOptions& options, HitsFile* hits, Progress* progress);
+    NarrowPhaseRun(const PairOptions& options, HitsFile* hits, Progress* progress);
 
     /// Answers `pairs`, numbered from `first_pair`. `truth`, when not empty, has the known answer (1:
     /// contact in [0, 1]) of each. Throws Interrupted after a signal, InputError if --hits fails.
@@ -70,7 +74,7 @@ private:
     void add(const Summary& part, std::size_t first_pair);
     void compare(std::span<const std::int8_t> truth);
 
-    const CommonOptions& options_;
+    const PairOptions& options_;
     HitsFile* hits_;
     Progress* progress_;
     Totals totals_;
@@ -84,7 +88,7 @@ private:
 /// Runs `feed`, which calls answer() for all pairs of `question`, on the threads asked for, with
 /// progress bar and hits file; then prints the report. Nothing stays behind under the name of the hits
 /// file if any of it throws.
-void run_narrow_phase(const CommonOptions& options, const Question& question,
+void run_narrow_phase(const PairOptions& options, const Question& question,
                       const std::function<void(NarrowPhaseRun&)>& feed);
 
 }  // namespace fastccd::tools

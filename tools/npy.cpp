@@ -255,11 +255,12 @@ void NpyPairs::load(std::size_t begin, std::size_t end) const
     file_.load(data_offset_ + first * size, (last - first) * size);
 }
 
-NpyWriter::NpyWriter(const std::filesystem::path& path, PairView::Layout layout, std::size_t pairs)
-    : file_{path}, layout_{layout}, missing_{pairs}
+namespace {
+
+/// The header of float64 pairs. Of records it has the same length, 128 bytes, whatever their number.
+std::string npy_header(PairView::Layout layout, std::size_t pairs)
 {
     const bool blocked = layout == PairView::Layout::blocked;
-    if (blocked && pairs % block_pairs != 0) throw std::logic_error("blocks of a .npy file hold 8 pairs each");
     std::string text = blocked ? fmt::format("({}, 24, 8)", pairs / block_pairs) : fmt::format("({}, 8, 3)", pairs);
     text = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': {}, }}", text);
     // Magic, version, length, text and newline are padded to 64 bytes, which aligns the array.
@@ -268,13 +269,26 @@ NpyWriter::NpyWriter(const std::filesystem::path& path, PairView::Layout layout,
     text += '\n';
     std::string header{magic};
     header += {'\x01', '\x00', static_cast<char>(text.size() & 0xff), static_cast<char>(text.size() >> 8)};
-    file_.write(header + text);
+    return header + text;
+}
+
+}  // namespace
+
+NpyWriter::NpyWriter(const std::filesystem::path& path, PairView::Layout layout, std::optional<std::size_t> pairs)
+    : file_{path}, layout_{layout}, promised_{pairs}
+{
+    if (layout == PairView::Layout::blocked && pairs.value_or(1) % block_pairs != 0) {
+        throw std::logic_error("blocks of a .npy file hold 8 pairs each");
+    }
+    file_.write(npy_header(layout, pairs.value_or(0)));
 }
 
 void NpyWriter::append(const PairView& pairs)
 {
-    if (pairs.size() > missing_) throw std::logic_error("more pairs than the .npy header says");
-    missing_ -= pairs.size();
+    if (promised_ && pairs.size() > *promised_ - appended_) {
+        throw std::logic_error("more pairs than the .npy header says");
+    }
+    appended_ += pairs.size();
     const bool as_is = pairs.layout() == layout_ && pairs.scalar() == PairView::Scalar::float64;
     if (as_is) {
         file_.write({static_cast<const char*>(pairs.data()), pairs.size() * pair_bytes(pairs)});
@@ -298,9 +312,18 @@ void NpyWriter::append(const PairView& pairs)
     }
 }
 
+void NpyWriter::close()
+{
+    if (closed_) return;
+    if (promised_ && appended_ != *promised_) throw std::logic_error("fewer pairs than the .npy header says");
+    if (!promised_) file_.rewrite(0, npy_header(layout_, appended_));
+    file_.close();
+    closed_ = true;
+}
+
 void NpyWriter::commit()
 {
-    if (missing_ != 0) throw std::logic_error("fewer pairs than the .npy header says");
+    close();
     file_.commit();
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include <fastccd/pair_view.hpp>
@@ -51,19 +52,26 @@ private:
 class NpyWriter {
 public:
     /// `layout`: interleaved for shape (N,8,3); blocked for (B,24,8), where `pairs` is to be a
-    /// multiple of 8. Throws InputError.
-    NpyWriter(const std::filesystem::path& path, PairView::Layout layout, std::size_t pairs);
+    /// multiple of 8. No `pairs`: as many as will be appended, interleaved, to a regular file. Throws
+    /// InputError.
+    NpyWriter(const std::filesystem::path& path, PairView::Layout layout, std::optional<std::size_t> pairs);
 
     /// Appends pairs; for the blocked layout a multiple of 8 at a time. Throws InputError.
     void append(const PairView& pairs);
 
-    /// Throws InputError; std::logic_error if not exactly the promised number of pairs was appended.
+    /// Nothing more is appended: see OutputFile::close. Throws InputError; std::logic_error if not
+    /// exactly the promised number of pairs was appended.
+    void close();
+
+    /// Closes, and makes the file appear. Throws as close().
     void commit();
 
 private:
     OutputFile file_;
     PairView::Layout layout_;
-    std::size_t missing_;
+    std::optional<std::size_t> promised_;
+    std::size_t appended_ = 0;
+    bool closed_ = false;
 };
 
 }  // namespace fastccd::tools

@@ -96,14 +96,35 @@ OutputFile::~OutputFile()
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void OutputFile::commit()
+void OutputFile::rewrite(std::size_t offset, std::string_view bytes) const
 {
+    while (!bytes.empty()) {
+        const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        if (written >= 0) {
+            bytes.remove_prefix(static_cast<std::size_t>(written));
+            offset += static_cast<std::size_t>(written);
+        } else if (errno == EINTR) {
+            check_interrupt();
+        } else {
+            fail(target_, "cannot be written", errno);
+        }
+    }
+}
+
+void OutputFile::close()
+{
+    if (descriptor_ < 0) return;
     // Delayed allocation and network file systems report a full disk only here. Pipes and devices
     // cannot be synchronised (EINVAL), which is no failure.
     if (!temporary_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL) fail(target_, "cannot be written", errno);
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) fail(target_, "cannot be written", errno);
+}
+
+void OutputFile::commit()
+{
+    close();
     if (temporary_.empty()) return;
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "cannot be created", errno);
     temporary_.clear();

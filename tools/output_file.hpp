@@ -1,6 +1,7 @@
 // Output that is complete or absent.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string_view>
 
@@ -30,6 +31,13 @@ public:
 
     /// Appends, unbuffered: pass large pieces. Throws as write_all.
     void write(std::string_view bytes) const { write_all(descriptor_, bytes, target_); }
+
+    /// Replaces bytes written before, of a file that is not written in place. Throws InputError.
+    void rewrite(std::size_t offset, std::string_view bytes) const;
+
+    /// Nothing more is to be written: all of it is put on the disk, the file not yet under its name. Of many
+    /// files that are to appear together, this frees the descriptors. Throws InputError.
+    void close();
 
     /// Makes the file appear under its name. Throws InputError.
     void commit();

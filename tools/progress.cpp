@@ -37,7 +37,8 @@ void write_or_not(std::string_view text)
 
 }  // namespace
 
-std::string progress_line(std::size_t done, std::size_t total, double seconds, std::size_t width)
+std::string progress_line(std::size_t done, std::size_t total, double seconds, std::size_t width,
+                          std::string_view place)
 {
     const double fraction =
         total == 0 ? 1.0 : std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
@@ -49,8 +50,9 @@ std::string progress_line(std::size_t done, std::size_t total, double seconds, s
         const double rate = static_cast<double>(done) / seconds;
         const double left = std::min(static_cast<double>(total - std::min(done, total)) / rate, 359'999.0);
         const auto left_seconds = static_cast<unsigned>(std::ceil(left));
-        details = fmt::format("  {:.1f} M pairs/s  {}:{:02}:{:02} left", rate * 1e-6, left_seconds / 3600,
-                              left_seconds / 60 % 60, left_seconds % 60);
+        details = fmt::format("  {}  {}:{:02}:{:02} left",
+                              place.empty() ? fmt::format("{:.1f} M pairs/s", rate * 1e-6) : std::string{place},
+                              left_seconds / 3600, left_seconds / 60 % 60, left_seconds % 60);
     }
     if (line.size() + details.size() < width) line += details;
 
@@ -82,7 +84,7 @@ void Progress::advance(std::size_t count)
     if (now < next_draw_) return;
     next_draw_ = now + draw_interval;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    write_or_not(std::string{clean_line} + progress_line(done_, total_, seconds, standard_error_width()));
+    write_or_not(std::string{clean_line} + progress_line(done_, total_, seconds, standard_error_width(), place_));
     drawn_ = true;
 }
 

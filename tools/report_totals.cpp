@@ -46,7 +46,7 @@ std::string with_commas(std::size_t number)
     return text;
 }
 
-std::string text_report(const CommonOptions& options, const Question& question, const Totals& totals)
+std::string text_report(const PairOptions& options, const Question& question, const Totals& totals)
 {
     const Summary& sum = totals.summary;
     fmt::memory_buffer out;
@@ -80,7 +80,7 @@ std::string text_report(const CommonOptions& options, const Question& question, 
     return fmt::to_string(out);
 }
 
-std::string json_report(const CommonOptions& options, const Question& question, const Totals& totals)
+std::string json_report(const PairOptions& options, const Question& question, const Totals& totals)
 {
     using Json = nlohmann::ordered_json;
     const Summary& sum = totals.summary;
@@ -113,7 +113,7 @@ std::string json_report(const CommonOptions& options, const Question& question, 
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void print_report(const CommonOptions& options, const Question& question, const Totals& totals)
+void print_report(const PairOptions& options, const Question& question, const Totals& totals)
 {
     const bool to_error = OutputFile::is_standard_output(options.hits);
     const int descriptor = to_error ? STDERR_FILENO : STDOUT_FILENO;

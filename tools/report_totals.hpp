@@ -9,15 +9,15 @@
 namespace fastccd::tools {
 
 /// Lines of text, aligned, newline at the end.
-[[nodiscard]] std::string text_report(const CommonOptions& options, const Question& question, const Totals& totals);
+[[nodiscard]] std::string text_report(const PairOptions& options, const Question& question, const Totals& totals);
 
 /// One JSON object on one line, newline at the end. Numbers are finite; what was not asked for (odd
 /// and even without --parity) or does not exist (earliest without contacts) is null.
-[[nodiscard]] std::string json_report(const CommonOptions& options, const Question& question, const Totals& totals);
+[[nodiscard]] std::string json_report(const PairOptions& options, const Question& question, const Totals& totals);
 
 /// Prints the report that `options` ask for on standard output, or on standard error if --hits
 /// takes that. Throws as write_all.
-void print_report(const CommonOptions& options, const Question& question, const Totals& totals);
+void print_report(const PairOptions& options, const Question& question, const Totals& totals);
 
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::size_t number);

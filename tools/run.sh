@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sets everything up, builds fastccd, makes a sample and runs the main job on it.
+# Sets everything up, builds fastccd, makes a scene and finds all contacts in it: the main job.
 source "$(dirname "$0")/setup.sh"
 install_packages "${library_packages[@]}" "${tool_packages[@]}"
 configure_and_build -DFASTCCD_TESTS=OFF -DFASTCCD_BENCHMARKS=OFF -- fastccd_command
@@ -10,10 +10,11 @@ trap 'rm -rf "$sample"' EXIT
 
 say "instruction sets"
 "$fastccd" isa
-say "10 million random vertex-face pairs (the paper's test), contacts at odd and even numbers of roots"
-"$fastccd" random --kind vf --pairs 10000000 --seed 1 --parity
-say "a file of edge-edge pairs: written, read back memory-mapped, contacts listed"
-"$fastccd" random --kind ee --pairs 200000 --seed 2 --save "$sample/pairs.npy" --quiet
-"$fastccd" run "$sample/pairs.npy" --kind ee --hits "$sample/hits.csv"
-say "the first contacts of $(($(wc -l <"$sample/hits.csv") - 1)) in hits.csv"
-head -n 6 "$sample/hits.csv"
+say "a scene: a cloth falls on a ball and folds"
+"$fastccd" make-scene cloth-ball --size 300 --frames 12 "$sample/cloth"
+say "all contacts between its frames"
+"$fastccd" scene "$sample"/cloth/frame_*.ply --hits "$sample/contacts.csv"
+say "the first of $(($(wc -l <"$sample/contacts.csv") - 1)) contacts in contacts.csv"
+head -n 6 "$sample/contacts.csv"
+say "a million random vertex-face pairs (the paper's test), contacts at odd and even numbers of roots"
+"$fastccd" random --kind vf --pairs 1000000 --seed 1 --parity

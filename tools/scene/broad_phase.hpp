@@ -17,23 +17,7 @@
 #include <span>
 #include <vector>
 
-namespace fastccd {
-
-/// A vertex and a face, as indices into the vertices and the face list.
-struct VertexFace {
-    std::int32_t vertex;
-    std::int32_t face;
-    friend auto operator<=>(const VertexFace&, const VertexFace&) = default;
-};
-
-/// Two edges, as indices into the edge list.
-struct EdgeEdge {
-    std::int32_t edge_a;
-    std::int32_t edge_b;
-    friend auto operator<=>(const EdgeEdge&, const EdgeEdge&) = default;
-};
-
-}  // namespace fastccd
+#include <fastccd/indexed.hpp>
 
 namespace fastccd::tools {
 

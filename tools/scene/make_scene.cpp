@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <initializer_list>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -192,6 +193,26 @@ private:
     std::int32_t n_;
 };
 
+/// Frames of a scene made earlier would be taken for a part of this one, and other meshes too.
+void refuse_frames_left_over(int frames, const std::filesystem::path& out_dir)
+{
+    std::set<std::string> own;
+    for (int frame = 0; frame < frames; ++frame) own.insert(frame_name(frame, frames));
+    std::error_code error;
+    std::filesystem::directory_iterator entry(out_dir, error);
+    for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+        const std::filesystem::path& path = entry->path();
+        const bool mesh = path.extension() == ".ply" || path.extension() == ".obj";
+        if (!mesh || own.contains(path.filename().string())) continue;
+        throw InputError(
+            path,
+            "is a frame of another scene, which this one would be mixed up with; name an empty "
+            "directory");
+    }
+    if (error)
+        throw InputError(out_dir, fmt::format("the directory cannot be read: {}", error.message()));
+}
+
 }  // namespace
 
 ClothBall::ClothBall(int size, int frames) : size_(size), frames_(frames)
@@ -242,30 +263,38 @@ std::vector<double> ClothBall::positions(int frame) const
     return positions;
 }
 
-void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir)
+std::string frame_name(int frame, int frames)
+{
+    const std::size_t digits = std::max<std::size_t>(3, std::to_string(frames - 1).size());
+    return fmt::format("frame_{:0{}}.ply", frame, digits);
+}
+
+void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir,
+                     const std::function<void()>& on_frame)
 {
     const ClothBall scene(size, frames);
-    const auto frame_path = [&out_dir](int frame) {
-        return out_dir / fmt::format("frame_{:03}.ply", frame);
-    };
-
     std::error_code error;
-    std::filesystem::create_directories(out_dir, error);
+    const bool is_new = std::filesystem::create_directories(out_dir, error);
     if (error)
         throw InputError(out_dir,
                          fmt::format("the directory cannot be created: {}", error.message()));
-    // Frames of a longer scene made earlier would be taken for the end of this one.
-    if (const std::filesystem::path next = frame_path(frames);
-        std::filesystem::exists(next, error)) {
-        throw InputError(
-            next,
-            "is a frame of another scene, which this one would be mixed up with; name an empty "
-            "directory");
-    }
+    refuse_frames_left_over(frames, out_dir);
+
     Mesh mesh{{}, scene.faces()};
-    for (int frame = 0; frame < frames; ++frame) {
-        mesh.positions = scene.positions(frame);
-        write_ply(frame_path(frame), mesh);
+    int written = 0;
+    try {
+        while (written < frames) {
+            mesh.positions = scene.positions(written);
+            write_ply(out_dir / frame_name(written, frames), mesh);
+            ++written;
+            if (on_frame) on_frame();
+        }
+    } catch (...) {
+        // The beginning of a scene looks like a whole one.
+        while (written-- > 0)
+            std::filesystem::remove(out_dir / frame_name(written, frames), error);
+        if (is_new) std::filesystem::remove(out_dir, error);
+        throw;
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "mesh_io.hpp"
@@ -40,14 +42,19 @@ private:
     std::vector<std::int32_t> faces_;
 };
 
+/// File name of a frame: frame_000.ply and so on, with as many digits as put all `frames` names in order.
+[[nodiscard]] std::string frame_name(int frame, int frames);
+
 /// Writes the frames of ClothBall as OUT_DIR/frame_000.ply, frame_001.ply and so on: binary PLY,
-/// double. The directory is created if need be.
+/// double. The directory is created if need be. `on_frame`, if given, is called after each frame.
 ///
 /// With many frames the whole motion is covered; otherwise its end, where the contacts are, in
 /// steps of a few widths of a triangle, as a simulation would take them.
 ///
 /// Throws std::invalid_argument as ClothBall does, InputError when a file cannot be written or
-/// the directory holds frames that this scene does not replace. Each frame is complete or absent.
-void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir);
+/// the directory holds frames that this scene does not replace, and what `on_frame` throws. All frames
+/// are there in the end, or none.
+void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir,
+                     const std::function<void()>& on_frame = {});
 
 }  // namespace fastccd::tools

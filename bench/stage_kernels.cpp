@@ -1,0 +1,169 @@
+// The stages of the pipeline, one by one. Compiled once per instruction set, like simd/isa_kernels.cpp and with the same
+// flags, in a namespace of its own.
+//
+// Each stage reads its input from queues as the pipeline does and hands its results to `keep`, which costs nothing but
+// makes the compiler compute them: the cost of queueing what goes on is the pipeline's, not the stage's.
+#include <stage_table.hpp>
+
+#if defined(FASTCCD_KERNEL_ARCH)
+#include <lane_batch.hpp>
+#endif
+
+#include <area_inclusion.hpp>
+#include <householder.hpp>
+#include <projected_inclusion.hpp>
+#include <records.hpp>
+#include <sign_change.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+#if defined(FASTCCD_KERNEL_ARCH)
+using StageLane = xsimd::batch<double, xsimd::FASTCCD_KERNEL_ARCH>;
+#else
+using StageLane = double;
+#endif
+
+namespace {
+
+using L = StageLane;
+constexpr unsigned width = Lane<L>::width;
+
+#if defined(__aarch64__)
+#define FASTCCD_VECTOR_REGISTER "w"
+#else
+#define FASTCCD_VECTOR_REGISTER "x"
+#endif
+
+/// Makes the compiler believe that x is used.
+FASTCCD_INLINE void keep(L x)
+{
+#if defined(FASTCCD_KERNEL_ARCH)
+    asm volatile("" : : FASTCCD_VECTOR_REGISTER(x.data));
+#else
+    asm volatile("" : : FASTCCD_VECTOR_REGISTER(x));
+#endif
+}
+
+FASTCCD_INLINE unsigned count(unsigned lanes) { return static_cast<unsigned>(__builtin_popcount(lanes)); }
+
+/// Calls stage(record) with every batch of the queues, and adds up the lanes it keeps.
+template <class Queue, class StageOfRecord>
+FASTCCD_INLINE unsigned for_each_batch(const Queue* queues, StageOfRecord stage)
+{
+    unsigned kept = 0;
+    for (unsigned q = 0; q < bench::stage_queues; ++q)
+        for (unsigned i = 0; i < Queue::drain_at; i += width) {
+            PairRecord<L> record;
+            read(queues[q], i, record);
+            kept += count(stage(record));
+        }
+    return kept;
+}
+
+/// Length and volume certificates: what every pair costs, loading included. With `area`, all three certificates.
+template <PairKind kind, bool area>
+unsigned certificates(const bench::StageInput& input)
+{
+    const CertificateBounds bounds = input.parameters->bounds.certificates();
+    unsigned kept = 0;
+    for (std::size_t i = 0; i < input.pairs; i += block_pairs)
+        for (unsigned lane = 0; lane < block_pairs; lane += width) {
+            const double* const coordinates = input.blocks + i * pair_coordinates + lane;
+            const RelativeMotion<L> r = relative_motion<L>(coordinates, block_pairs, input.parameters->t_max);
+            Extents<L> extents;
+            LaneMask<L> apart = linear_certificate<kind>(r, bounds, extents);
+            const Scales<L> scale = scales(extents);
+            const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
+            apart = apart | cubic_certificate(cubic, scale.volume, bounds);
+            if constexpr (area)
+                apart = apart | visit_edge_functions<kind>(
+                                    r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                                        return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
+                                    });
+            kept += count(Lane<L>::bits(in_lane_range(cubic, extents)) & ~Lane<L>::bits(apart));
+        }
+    return kept;
+}
+
+/// The monotone pieces of the cubic and the first in which it changes sign.
+unsigned sign_change(const bench::StageInput& input)
+{
+    return for_each_batch(input.candidates, [&](const PairRecord<L>& record) FASTCCD_INLINE_LAMBDA {
+        const MonotonePieces<L> pieces = monotone_pieces(bernstein(record.cubic), record.scale.volume,
+                                                         input.parameters->bounds, input.parameters->leaf_width);
+        const LaneMask<L> first = opposite_signs(pieces.value[0], pieces.value[1]);
+        const LaneMask<L> second = opposite_signs(pieces.value[1], pieces.value[2]);
+        const LaneMask<L> third = opposite_signs(pieces.value[2], pieces.value[3]);
+        keep(select<L>(first, pieces.time[0], select<L>(second, pieces.time[1], pieces.time[2])));
+        keep(select<L>(first, pieces.time[1], select<L>(second, pieces.time[2], pieces.time[3])));
+        keep(pieces.f.c0), keep(pieces.f.c1), keep(pieces.f.c2), keep(pieces.f.c3);
+        return Lane<L>::bits(pieces.certain & (first | second | third));
+    });
+}
+
+/// Householder's steps as the pipeline takes them before it dismisses roots: two, clipped to the piece.
+unsigned householder_clipped(const bench::StageInput& input)
+{
+    return for_each_batch(input.roots, [](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        const L middle = (root.low + root.high) * broadcast<L>(0.5);
+        const L guess = clipped_steps<L>(root.f, {root.low, root.high}, middle, 2);
+        keep(guess);
+        return Lane<L>::bits(less_equal(guess, root.high));
+    });
+}
+
+/// And as it takes them to the end: three, which keep a bracket.
+unsigned householder_bracketed(const bench::StageInput& input)
+{
+    return for_each_batch(input.roots, [](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
+        const L guess = bracketed_steps<L>(root.f, rising, {root.low, root.high}, root.guess, 3);
+        keep(guess);
+        return Lane<L>::bits(less_equal(guess, root.high));
+    });
+}
+
+/// Half width of the neighbourhood in which inclusion is asked for: the pipeline's while it dismisses roots.
+constexpr double bracket = 0x1p-8;
+
+template <PairKind kind>
+unsigned projected(const bench::StageInput& input)
+{
+    return for_each_batch(input.roots, [&](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        const Inclusion<L> found =
+            projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(bracket), input.parameters->bounds);
+        return (1u << width) - 1 - Lane<L>::bits(found.absent);
+    });
+}
+
+template <PairKind kind>
+unsigned area(const bench::StageInput& input)
+{
+    return for_each_batch(input.roots, [&](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        const LaneMask<L> absent =
+            area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(bracket), input.parameters->bounds);
+        return (1u << width) - 1 - Lane<L>::bits(absent);
+    });
+}
+
+constexpr PairKind vf = PairKind::vertex_face, ee = PairKind::edge_edge;
+
+template <unsigned (*vertex_face)(const bench::StageInput&), unsigned (*edge_edge)(const bench::StageInput&)>
+unsigned by_kind(const bench::StageInput& input)
+{
+    return input.kind == vf ? vertex_face(input) : edge_edge(input);
+}
+
+}  // namespace
+
+extern const bench::StageTable stage_table;
+const bench::StageTable stage_table{Isa::FASTCCD_KERNEL_ISA,
+                                    {{"screening", by_kind<certificates<vf, false>, certificates<ee, false>>, true},
+                                     {"certificates", by_kind<certificates<vf, true>, certificates<ee, true>>, true},
+                                     {"sign_change", sign_change, false},
+                                     {"householder_clipped", householder_clipped, false},
+                                     {"householder_bracketed", householder_bracketed, false},
+                                     {"projected_inclusion", by_kind<projected<vf>, projected<ee>>, false},
+                                     {"area_inclusion", by_kind<area<vf>, area<ee>>, false}}};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

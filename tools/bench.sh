@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Sets everything up, builds, runs the benchmarks, records the medians and prints them as tables.
+#
+#   tools/bench.sh                 everything that is run by default; writes bench/results/<cpu>-<isa>.json and bench/README.md
+#   tools/bench.sh --quick         few and short; the record stays in the build folder
+#   tools/bench.sh --filter REGEX  only benchmarks of such names, out of all there are; the record stays in the build folder
+source "$(dirname "$0")/setup.sh"
+
+quick=false
+filter=
+while [ $# -gt 0 ]; do
+  case $1 in
+    --quick) quick=true ;;
+    --filter) filter=${2:?--filter needs a regular expression}; shift ;;
+    *) sed -n '4,6s/^# *//p' "$0" >&2; exit 2 ;;
+  esac
+  shift
+done
+
+# Other libraries to compare with. Whatever else is wrong with them must not keep the benchmarks from running.
+peer_packages=(libfcl-dev libbullet-dev)
+install_packages "${library_packages[@]}" "${tool_packages[@]}" "${bench_packages[@]}" python3
+install_packages "${peer_packages[@]}" || echo "going on without ${peer_packages[*]}" >&2
+programs=(narrow_phase_bench stage_bench peers_bench)
+configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_BENCHMARKS=ON -- "${programs[@]}"
+
+data=${FASTCCD_DATA:-$root/../shared/data}
+[ -d "$data" ] || printf '\n!! No data folder at %s: the public scenes are left out. Set FASTCCD_DATA.\n' "$data"
+
+options=(--benchmark_repetitions=5 --benchmark_min_time=0.1)
+if $quick; then
+  options=(--benchmark_repetitions=3 --benchmark_min_time=0.02)
+  filter=${filter:-'/(random|generated|cloth-ball)/(blocked|indexed)/double/threads:1/|^stage/.*/random$|^peer/.*/random/'}
+fi
+[ -z "$filter" ] || options+=("--benchmark_filter=$filter")
+commit=$(git -C "$root" describe --always --dirty 2>/dev/null || echo unknown)
+options+=(--benchmark_report_aggregates_only=true "--benchmark_context=commit=$commit" --benchmark_out_format=json)
+
+runs=()
+for program in "${programs[@]}"; do
+  names=$("$build/bench/$program" ${filter:+"--benchmark_filter=$filter"} --benchmark_list_tests 2>/dev/null || true)
+  [ -n "$names" ] || continue
+  say "$program (medians of repetitions)"
+  out=$build/bench/$program.json
+  "$build/bench/$program" "${options[@]}" "--benchmark_out=$out" 2>"$out.log" | grep --line-buffered -E '_median|ERROR' ||
+    { cat "$out.log" >&2; exit 1; }
+  runs+=("$out")
+done
+[ ${#runs[@]} -gt 0 ] || { echo "no benchmark has a name that matches $filter" >&2; exit 1; }
+
+results=$root/bench/results
+[ -z "$filter" ] || results=$build/bench/results
+record=$(python3 "$root/bench/report.py" merge "$results" "${runs[@]}")
+say "$record"
+python3 "$root/bench/report.py" table "$record"
+[ -n "$filter" ] || python3 "$root/bench/report.py" readme

@@ -1,0 +1,45 @@
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "commands.hpp"
+#include "common_options.hpp"
+#include "output_file.hpp"
+#include "scene/scene_report.hpp"
+#include "scene/scene_run.hpp"
+
+namespace fastccd::tools {
+
+void add_scene_command(CLI::App& app)
+{
+    CLI::App* const command = app.add_subcommand("scene", "Answer all that may touch in the frames of a moving mesh");
+    const auto options = std::make_shared<SceneOptions>();
+    command
+        ->add_option("FRAME", options->frames,
+                     "Two or more meshes with the same faces, in order of time; from\n"
+                     "each to the next is a step. PLY (ascii or binary) or .obj,\n"
+                     "triangles only")
+        ->required()
+        ->type_name("");
+    command
+        ->add_option("--save-pairs", options->save_pairs,
+                     "Also write the candidates as .npy for `fastccd run`, 192 bytes\n"
+                     "each, to DIR/step_000_vf.npy, step_000_ee.npy and so on")
+        ->check([](const std::string& path) {
+            return OutputFile::is_standard_output(path) ? "is to be a folder" : "";
+        })
+        ->type_name("DIR");
+    add_search_options(*command, options->common);
+    add_report_options(*command, options->common,
+                       "step,kind,v0,v1,v2,v3,toi; vf: the vertex,\nthen the face's; ee: the first edge's, then the second's");
+    command->callback([options] {
+        if (options->frames.size() < 2) {
+            throw CLI::ValidationError("FRAME", "a step is from one frame to another; name two or more");
+        }
+        refuse_overwriting_input(options->common, options->frames);
+        print_scene_report(*options, run_scene(*options));
+    });
+}
+
+}  // namespace fastccd::tools

@@ -1,0 +1,58 @@
+// The candidates of a scene with their coordinates, for `fastccd run`.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fastccd/options.hpp>
+
+#include "../npy.hpp"
+#include "broad_phase.hpp"
+
+namespace fastccd::tools {
+
+/// A folder of .npy files of pairs, two a step: step_000_vf.npy, step_000_ee.npy, step_001_vf.npy and so
+/// on, in the order of the candidates. They appear together on commit(); before, and if that never
+/// comes, nothing does, not even the folder if it is new.
+class SavedPairs {
+public:
+    /// Creates the folder if need be. Throws InputError when that fails, or when the folder holds pairs of
+    /// steps that this scene does not have: both would be taken for one scene.
+    SavedPairs(const std::filesystem::path& folder, std::size_t steps);
+    ~SavedPairs();
+
+    SavedPairs(const SavedPairs&) = delete;
+    SavedPairs& operator=(const SavedPairs&) = delete;
+
+    /// Closes the file before, begins the next: steps in order, vertex-face before edge-edge. Throws as NpyWriter.
+    void begin(std::size_t step_number, PairKind kind);
+
+    /// Appends to the file begun last. Throws InputError.
+    void append(const Step& step, std::span<const VertexFace> pairs) { append_pairs(step, pairs); }
+    void append(const Step& step, std::span<const EdgeEdge> pairs) { append_pairs(step, pairs); }
+
+    /// Puts everything on the disk, so that little can go wrong in commit(). Throws as NpyWriter::close.
+    void close();
+
+    /// Makes the files appear. Throws InputError.
+    void commit();
+
+private:
+    template <class Pair>
+    void append_pairs(const Step& step, std::span<const Pair> pairs);
+    [[nodiscard]] std::string file_name(std::size_t step_number, PairKind kind) const;
+    void create_folder();
+
+    std::filesystem::path folder_;
+    std::size_t steps_;
+    std::vector<std::filesystem::path> created_;  // folders, outermost first
+    std::deque<NpyWriter> files_;                 // closed but for the last
+    std::vector<double> records_;
+    bool committed_ = false;
+};
+
+}  // namespace fastccd::tools

@@ -1,0 +1,37 @@
+// The contacts of a scene as CSV.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <fastccd/options.hpp>
+
+#include "../output_file.hpp"
+#include "pair_vertices.hpp"
+
+namespace fastccd::tools {
+
+/// Columns `step,kind,v0,v1,v2,v3,toi`: kind vf or ee, vertex indices as pair_vertices gives them, toi in 17
+/// significant digits, which read back to the same double. Appears on commit(): see OutputFile, also for
+/// the meaning of "-".
+class SceneHits {
+public:
+    /// Throws InputError.
+    explicit SceneHits(const std::filesystem::path& path);
+
+    /// Appends a contact. Throws as OutputFile::write.
+    void append(std::size_t step, PairKind kind, const PairVertices& vertices, double toi);
+
+    /// Throws as OutputFile::write and OutputFile::commit.
+    void commit();
+
+private:
+    void flush();
+
+    OutputFile file_;
+    fmt::memory_buffer text_;
+};
+
+}  // namespace fastccd::tools

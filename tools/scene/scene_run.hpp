@@ -1,0 +1,26 @@
+// All steps of a scene: broad phase, narrow phase, contacts and pairs to files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../common_options.hpp"
+#include "scene_totals.hpp"
+
+namespace fastccd::tools {
+
+struct SceneOptions {
+    CommonOptions common;
+    std::vector<std::string> frames;
+    std::string save_pairs;  ///< Folder for the candidates as .npy; empty: none.
+};
+
+/// Invalid vertices that the report names.
+inline constexpr std::size_t most_invalid_vertices_named = 10;
+
+/// Answers all candidates of all steps, with progress bar, hits and saved pairs, on the threads asked for.
+/// Memory: two frames and the search trees over one, whatever the number of candidates. Throws InputError
+/// naming the file at fault, Interrupted after a signal; no file stays behind then.
+[[nodiscard]] SceneTotals run_scene(const SceneOptions& options);
+
+}  // namespace fastccd::tools
