@@ -101,37 +101,34 @@ unsigned sign_change(const bench::StageInput& input)
     });
 }
 
-/// Householder's steps as the pipeline takes them before it dismisses roots: two, clipped to the piece.
+/// Householder's steps as the pipeline takes them before it dismisses roots, clipped to the piece.
 unsigned householder_clipped(const bench::StageInput& input)
 {
     return for_each_batch(input.roots, [](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         const L middle = (root.low + root.high) * broadcast<L>(0.5);
-        const L guess = clipped_steps<L>(root.f, {root.low, root.high}, middle, 2);
+        const L guess = clipped_steps<L>(root.f, {root.low, root.high}, middle, coarse_steps);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
     });
 }
 
-/// And as it takes them to the end: three, which keep a bracket.
+/// And as it takes them to the end, which keep a bracket.
 unsigned householder_bracketed(const bench::StageInput& input)
 {
     return for_each_batch(input.roots, [](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
-        const L guess = bracketed_steps<L>(root.f, rising, {root.low, root.high}, root.guess, 3);
+        const L guess = bracketed_steps<L>(root.f, rising, {root.low, root.high}, root.guess, fine_steps);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
     });
 }
-
-/// Half width of the neighbourhood in which inclusion is asked for: the pipeline's while it dismisses roots.
-constexpr double bracket = 0x1p-8;
 
 template <PairKind kind>
 unsigned projected(const bench::StageInput& input)
 {
     return for_each_batch(input.roots, [&](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         const Inclusion<L> found =
-            projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(bracket), input.parameters->bounds);
+            projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(coarse_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(found.absent);
     });
 }
@@ -141,7 +138,7 @@ unsigned area(const bench::StageInput& input)
 {
     return for_each_batch(input.roots, [&](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         const LaneMask<L> absent =
-            area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(bracket), input.parameters->bounds);
+            area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(coarse_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(absent);
     });
 }

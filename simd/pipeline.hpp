@@ -50,15 +50,6 @@ public:
 private:
     static constexpr unsigned width = Lane<L>::width;
 
-    /// Half width of the bracket on which candidates are dismissed before full refinement, and of the one
-    /// around a refined root. Coarse: two Householder steps usually come closer, and edge functions of
-    /// most candidates differ from zero by more than 8 times this. Fine: small against any curvature
-    /// that matters, large against E_tol.
-    static constexpr double coarse_bracket = 0x1p-8;
-    static constexpr double fine_bracket = 0x1p-16;
-    static constexpr int coarse_steps = 2;
-    static constexpr int fine_steps = 4;
-
     const SearchParameters& parameters;
     const CertificateBounds whole, early;
     const double cutoff;

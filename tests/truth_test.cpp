@@ -54,8 +54,10 @@ void expect_nothing_missed_or_late(const std::vector<QuerySet>& sets, double tol
         EXPECT_EQ(count.late, 0u) << count.first_fault;
         EXPECT_GT(count.contacts, 0u);
     }
-    std::printf("E_tol %g: vertex-face %zu pairs, %zu contacts, %zu false alarms; edge-edge %zu, %zu, %zu\n", tolerance,
-                by_kind[0].pairs, by_kind[0].contacts, by_kind[0].false_alarms, by_kind[1].pairs, by_kind[1].contacts,
+    std::printf("E_tol %g: vertex-face %zu pairs, %zu contacts, %zu missed, %zu late, %zu false alarms; "
+                "edge-edge %zu, %zu, %zu, %zu, %zu\n",
+                tolerance, by_kind[0].pairs, by_kind[0].contacts, by_kind[0].missed, by_kind[0].late,
+                by_kind[0].false_alarms, by_kind[1].pairs, by_kind[1].contacts, by_kind[1].missed, by_kind[1].late,
                 by_kind[1].false_alarms);
 }
 

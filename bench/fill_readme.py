@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Puts recorded results between the markers of the repository's README.md, so that no figure in it is typed.
+
+run:   results/run.txt, what tools/run.sh printed
+truth: results/truth.txt, what truth_test printed
+speed: results/*.json, records of tools/bench.sh
+"""
+import json
+import pathlib
+import re
+
+results = pathlib.Path(__file__).parent / "results"
+readme = pathlib.Path(__file__).parent.parent / "README.md"
+
+
+def run_output():
+    text = (results / "run.txt").read_text()
+    return "    " + text.strip().replace("\n", "\n    ")
+
+
+def truth_table():
+    """Lines of truth_test: E_tol T: vertex-face N pairs, C contacts, F false alarms; edge-edge N, C, F."""
+    rows = ["| data | E_tol | kind | pairs | contacts | missed | late | false alarms |", "|---|---|---|---|---|---|---|---|"]
+    data = None
+    for line in (results / "truth.txt").read_text().splitlines():
+        if match := re.match(r"\[ RUN +\] Truth\.Public(\w+)", line):
+            data = {"HardCases": "hard cases", "Queries": "queries"}[match[1]]
+        if match := re.match(r"E_tol (\S+): vertex-face (\d+) pairs, (\d+) contacts, (\d+) missed, (\d+) late, (\d+) false alarms; "
+                             r"edge-edge (\d+), (\d+), (\d+), (\d+), (\d+)", line):
+            tolerance, *numbers = match.groups()
+            for kind, values in (("vertex-face", numbers[:5]), ("edge-edge", numbers[5:])):
+                rows.append("| " + " | ".join([data, f"{float(tolerance):g}", kind, *(f"{int(v):,}" for v in values)]) + " |")
+    return "\n".join(rows)
+
+
+def speed_table():
+    """The end-to-end medians of one thread: packed and indexed pairs."""
+    rows = ["| kind | data | layout | million pairs/s | of the streaming limit | contacts |", "|---|---|---|---|---|---|"]
+    for record in sorted(results.glob("*.json")):
+        for b in json.loads(record.read_text())["benchmarks"]:
+            name = b["name"].removesuffix("_median").removesuffix("/manual_time")
+            match = re.fullmatch(r"(vertex_face|edge_edge)/avx2/([^/]+)/(blocked|indexed)/double/threads:1", name)
+            if not match or b.get("aggregate_name", "median") != "median":
+                continue
+            limit = f"{100 * b['limit_fraction']:.0f} %" if "limit_fraction" in b else "-"
+            kind = match[1].replace("_", "-")
+            rows.append(f"| {kind} | {match[2]} | {match[3]} | {b['pairs/s'] / 1e6:.1f} | {limit} | {int(b['contacts']):,} |")
+    return "\n".join(rows)
+
+
+text = readme.read_text()
+for mark, content in (("run.sh", run_output()), ("truth", truth_table()), ("speed", speed_table())):
+    begin, end = f"<!-- {mark} begin -->", f"<!-- {mark} end -->"
+    head, rest = text.split(begin)
+    text = head + begin + "\n" + content + "\n" + end + rest.split(end)[1]
+readme.write_text(text)
