@@ -1,0 +1,85 @@
+#include "allocation_count.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdlib>
+#include <new>
+
+// Sanitizers bring their own malloc; there only operator new is counted.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define FASTCCD_COUNT_MALLOC 0
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define FASTCCD_COUNT_MALLOC 0
+#endif
+#endif
+#if !defined(FASTCCD_COUNT_MALLOC) && defined(__GLIBC__)
+#define FASTCCD_COUNT_MALLOC 1
+#endif
+
+namespace {
+std::atomic<std::size_t> count{0};
+}
+
+namespace fastccd::testing {
+std::size_t allocations() { return count.load(); }
+}  // namespace fastccd::testing
+
+#if FASTCCD_COUNT_MALLOC
+
+// operator new calls malloc, and is counted there.
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    return __libc_calloc(n, size);
+}
+void* realloc(void* p, std::size_t size)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    return __libc_realloc(p, size);
+}
+void* memalign(std::size_t alignment, std::size_t size)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
+int posix_memalign(void** p, std::size_t alignment, std::size_t size)
+{
+    *p = memalign(alignment, size);
+    return *p != nullptr ? 0 : ENOMEM;
+}
+}
+
+#else
+
+void* operator new(std::size_t size)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    if (void* p = std::malloc(size != 0 ? size : 1)) return p;
+    throw std::bad_alloc{};
+}
+void* operator new(std::size_t size, std::align_val_t alignment)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    const auto a = static_cast<std::size_t>(alignment);
+    if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+    throw std::bad_alloc{};
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+#endif

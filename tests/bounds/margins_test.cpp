@@ -1,0 +1,219 @@
+// The margins by which lanes decide: what they conclude with a margin, the certified search concludes too, with its
+// own rounding and its own bounds, on every part of the interval.
+//
+// Each margin is measured as the largest value that lanes can see where the search does not certify: the lanes' value
+// minus the search's smallest coefficient, plus the search's bound. Adding a constant to the polynomial changes
+// neither, so this needs no hunt for polynomials that nearly vanish.
+#include <bernstein.hpp>
+#include <magnitudes.hpp>
+#include <projected_inclusion.hpp>
+
+#include "measured_bound.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+using portable::Cubic;
+using portable::Quadratic;
+using portable::QuadraticVector;
+
+constexpr int effort = 20;  // no exact arithmetic here, so there is time for more
+
+/// A part of [low, high], its ends among them.
+struct Part {
+    double a, b;
+};
+Part part_of(double low, double high, const Input& in)
+{
+    const double a = low + in.a * (high - low), b = low + in.b * (high - low);
+    return {std::clamp(a, low, high), std::clamp(b, low, high)};
+}
+
+Cubic<double> cubic_of(const Computed& c)
+{
+    return portable::bernstein(portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1)));
+}
+
+/// The search's bound is at most the one from extents, which stands for it.
+double search_bound(const Computed& c) { return c.bounds.cubic_on_interval() * c.scale.volume; }
+
+TEST(Margins, CubicOnIntervals)
+{
+    expect_bound("cubic_on_interval_lanes", 0.1, [](const Input& in) {
+        const Computed c{in};
+        const Cubic<double> whole = cubic_of(c);
+        // Lanes look at [0, b] or [b, 1], the search at a part of it.
+        const Part lanes = in.a < 0.5 ? Part{0.0, in.b} : Part{in.b, 1.0};
+        const Part leaf = part_of(lanes.a, lanes.b, in);
+        const Cubic<double> seen = portable::on_interval(whole, lanes.a, lanes.b);
+        const Cubic<double> local = portable::on_interval(whole, leaf.a, leaf.b);
+        const double margin = std::max(portable::smallest(seen) - portable::smallest(local),
+                                       portable::largest(local) - portable::largest(seen));
+        return (margin + search_bound(c)) / (c.bounds.cubic_on_interval_lanes() * c.scale.volume);
+    }, ordinary_shifts, effort);
+}
+
+/// One component of a cross product on [a, b] as the search computes it.
+Quadratic<double> component_on(const QuadraticVector<double>& v, std::size_t axis, Part i)
+{
+    return portable::on_interval(
+        Quadratic<double>{component(v.start, axis), 0.5 * component(v.twice_middle, axis), component(v.end, axis)}, i.a, i.b);
+}
+
+/// Lanes: a component of a cross product at `centre`, from interpolated vectors. Search: coefficients on a part of
+/// [centre - delta, centre + delta]. Measured against `bound`, after taking off the change within delta.
+double edge_margin(double lanes, const Quadratic<double>& search, double change, double search_bound, double bound)
+{
+    const double margin = std::max(lanes - portable::smallest(search), portable::largest(search) - lanes);
+    return (margin - change + search_bound) / bound;
+}
+
+struct Neighbourhood {
+    double centre, delta;
+    Part leaf;
+    double change;  ///< As in projected_inclusion.
+
+    explicit Neighbourhood(const Input& in)
+    {
+        centre = in.a;
+        // Wide ones are where the change decides, narrow ones where rounding does.
+        delta = std::min(0.5, in.b - in.a);
+        const double low = std::max(0.0, centre - delta), high = std::min(1.0, centre + delta);
+        leaf = part_of(low, high, in);
+        change = 8.0 * (delta + delta * delta);
+    }
+};
+
+double edge_function_ratio(const Input& in)
+{
+    const Computed c{in};
+    const Neighbourhood n{in};
+    double worst = -1;
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        const auto at = portable::cross(portable::position(c.r, i, n.centre), portable::position(c.r, j, n.centre));
+        const auto q = portable::cross_product(c.r, i, j);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double area = area_of(c.scale, axis);
+            worst = std::max(worst, edge_margin(component(at, axis), component_on(q, axis, n.leaf), n.change * area,
+                                                c.bounds.quadratic_on_interval() * area, c.bounds.edge_function() * area));
+        }
+    }
+    return worst;
+}
+
+/// The fourth edge function of an edge-edge pair: a sum of three in the lanes, one of vectors from x1 in the search.
+double edge_function_sum_ratio(const Input& in)
+{
+    const Computed c{in};
+    Input from_x1 = in;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        std::swap(from_x1.x[axis], from_x1.x[3 + axis]);
+        std::swap(from_x1.x[12 + axis], from_x1.x[15 + axis]);
+    }
+    const Computed d{from_x1};
+    const Neighbourhood n{in};
+    const auto r1 = portable::position(c.r, 0, n.centre), r2 = portable::position(c.r, 1, n.centre),
+               r3 = portable::position(c.r, 2, n.centre);
+    const auto sum = portable::add(portable::subtract(portable::cross(r2, r3), portable::cross(r1, r3)), portable::cross(r1, r2));
+    const auto q = portable::cross_product(d.r, 1, 2);
+    double worst = -1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double area = area_of(c.scale, axis);
+        worst = std::max(worst, edge_margin(component(sum, axis), component_on(q, axis, n.leaf), 3 * n.change * area,
+                                            d.bounds.quadratic_on_interval() * area_of(d.scale, axis),
+                                            c.bounds.edge_function_sum() * area));
+    }
+    return worst;
+}
+
+TEST(Margins, EdgeFunctionsNearATime)
+{
+    expect_bound("edge_function", 0.1, edge_function_ratio, ordinary_shifts, effort);
+    expect_bound("edge_function_sum", 0.1, edge_function_sum_ratio, ordinary_shifts, effort);
+}
+
+/// The change of an edge function within delta alone: without it, narrow neighbourhoods would hide a wrong factor.
+TEST(Margins, ChangeOfEdgeFunctions)
+{
+    Adversary adversary{9};
+    const auto [input, found] = adversary.worst(
+        30, 400, [&] { return adversary.input(1.0, 0, 0); }, [&](const Input& in) { return adversary.changed(in); },
+        [](const Input& in) {
+            const Computed c{in};
+            const Neighbourhood n{in};
+            if (n.delta < 0x1p-20) return -1.0;
+            double worst = 0;
+            const auto at = portable::cross(portable::position(c.r, 0, n.centre), portable::position(c.r, 1, n.centre));
+            const auto q = portable::cross_product(c.r, 0, 1);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const Quadratic<double> local = component_on(q, axis, n.leaf);
+                const double value = component(at, axis);
+                worst = std::max(worst, std::max(value - portable::smallest(local), portable::largest(local) - value) /
+                                            ((n.change + c.bounds.edge_function()) * area_of(c.scale, axis)));
+            }
+            return worst;
+        });
+    std::printf("%-34s worst change / bound: %.4f\n", "8 (delta + delta^2)", found);
+    EXPECT_LT(found, 1.0) << text(input);
+    EXPECT_GT(found, 0.3);
+}
+
+/// Certificates on [0, b] from a motion with an interpolated end (earliest contact), against the search on parts of it.
+portable::RelativeMotion<double> until(const portable::RelativeMotion<double>& r, double end)
+{
+    return {{r.start[0], r.start[1], r.start[2]},
+            {portable::position(r, 0, end), portable::position(r, 1, end), portable::position(r, 2, end)}};
+}
+
+/// Lanes compare f0, 3 f1, 3 f2, f3 with one bound; only a third of it is certain of f1 and f2.
+TEST(Margins, EarlyCubic)
+{
+    expect_bound("early().cubic", 0.1, [](const Input& in) {
+        const Computed c{in};
+        const auto early = portable::bernstein(
+            portable::coplanarity_cubic(until(c.r, in.b), portable::cross_product(until(c.r, in.b), 0, 1)));
+        const Part leaf = part_of(0.0, in.b, in);
+        const Cubic<double> local = portable::on_interval(cubic_of(c), leaf.a, leaf.b);
+        const double margin = std::max(portable::smallest(early) - portable::smallest(local),
+                                       portable::largest(local) - portable::largest(early));
+        return 3 * (margin + search_bound(c)) / (c.bounds.early().cubic * c.scale.volume);
+    }, ordinary_shifts, effort);
+}
+
+TEST(Margins, EarlyEdgeFunctions)
+{
+    const auto ratio = [](const Input& in, bool sum) {
+        const Computed c{in};
+        Input origin = in;
+        for (std::size_t axis = 0; sum && axis < 3; ++axis) {
+            std::swap(origin.x[axis], origin.x[3 + axis]);
+            std::swap(origin.x[12 + axis], origin.x[15 + axis]);
+        }
+        const Computed d{origin};
+        const auto r = until(c.r, in.b);
+        const auto lanes = sum ? portable::subtract_then_add(portable::cross_product(r, 1, 2), portable::cross_product(r, 0, 2),
+                                                             portable::cross_product(r, 0, 1))
+                               : portable::cross_product(r, 0, 1);
+        const auto search = sum ? portable::cross_product(d.r, 1, 2) : portable::cross_product(c.r, 0, 1);
+        const Part leaf = part_of(0.0, in.b, in);
+        double worst = -1;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double start = component(lanes.start, axis), middle = 0.5 * component(lanes.twice_middle, axis),
+                         end = component(lanes.end, axis);
+            const Quadratic<double> local = component_on(search, axis, leaf);
+            const double margin = std::max(std::min({start, middle, end}) - portable::smallest(local),
+                                           portable::largest(local) - std::max({start, middle, end}));
+            const double search_bound = d.bounds.quadratic_on_interval() * area_of(d.scale, axis);
+            const auto early = c.bounds.early();
+            worst = std::max(worst, 2 * (margin + search_bound) /
+                                        ((sum ? early.quadratic_sum : early.quadratic) * area_of(c.scale, axis)));
+        }
+        return worst;
+    };
+    expect_bound("early().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
+    expect_bound("early().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
+}
+
+}  // namespace
+}  // namespace fastccd::testing

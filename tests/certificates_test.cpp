@@ -1,0 +1,199 @@
+// What the proofs of absence claim, on whole pairs: none is given over an interval that holds an exact contact, and
+// what lanes conclude, the certified search can prove leaf by leaf.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include <leaf_search.hpp>
+#include <pipeline.hpp>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+#include "oracle/exact_ccd.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+using scalar::Interval;
+using scalar::PairPolynomials;
+
+constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
+
+double uniform(std::mt19937_64& bits) { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+
+const double* coordinates(const oracle::Pair& pair) { return pair[0].data(); }
+
+/// An interval of [0, 1] that holds [low, high], tight or wide on either side.
+Interval around(double low, double high, std::mt19937_64& bits)
+{
+    const auto widen = [&] { return bits() % 4 == 0 ? 0.0 : std::ldexp(uniform(bits), -static_cast<int>(bits() % 60)); };
+    return {std::max(0.0, low - widen()), std::min(1.0, high + widen())};
+}
+
+/// Every proof of absence that the lanes have, over [i.a, i.b] or all of [0, 1]; empty if none is given.
+template <PairKind kind>
+std::string lane_proof(const oracle::Pair& pair, const SearchParameters& parameters, Interval i)
+{
+    const ErrorBounds& bounds = parameters.bounds;
+    const auto r = portable::relative_motion<double>(coordinates(pair), 1, parameters.t_max);
+    portable::Extents<double> extents;
+    const bool linear = portable::linear_certificate<kind>(r, bounds.certificates(), extents).value;
+    const auto scale = portable::scales(extents);
+    const auto cubic = portable::coplanarity_cubic(r, portable::cross_product(r, 0, 1));
+    if (!portable::in_lane_range(cubic, extents).value) return {};
+    if (linear) return "linear";
+    if (portable::cubic_certificate(cubic, scale.volume, bounds.certificates()).value) return "cubic";
+    const auto in_projections = [&](const portable::RelativeMotion<double>& motion, const CertificateBounds& chosen) {
+        return portable::visit_edge_functions<kind>(motion, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
+                   return portable::quadratic_certificate<kind>(p, q, t, s, scale, chosen);
+               }).value;
+    };
+    if (in_projections(r, bounds.certificates())) return "quadratic";
+
+    const auto early = portable::RelativeMotion<double>{
+        {r.start[0], r.start[1], r.start[2]},
+        {portable::position(r, 0, i.b), portable::position(r, 1, i.b), portable::position(r, 2, i.b)}};
+    const auto early_cubic = portable::coplanarity_cubic(early, portable::cross_product(early, 0, 1));
+    if (portable::cubic_certificate(early_cubic, scale.volume, bounds.early()).value) return "early cubic";
+    if (in_projections(early, bounds.early())) return "early quadratic";
+
+    const double centre = i.a + 0.5 * (i.b - i.a), delta = std::max(centre - i.a, i.b - centre);
+    if (portable::projected_inclusion<kind>(r, scale, centre, delta, bounds).absent.value) return "projected inclusion";
+    if (portable::area_certificate<kind>(r, scale, centre, delta, bounds).value) return "area inclusion";
+    return {};
+}
+
+template <PairKind kind>
+std::string search_proof(const oracle::Pair& pair, const SearchParameters& parameters, Interval i)
+{
+    const PairPolynomials<kind> polynomials{coordinates(pair), parameters};
+    if (polynomials.apart()) return "search, whole";
+    if (polynomials.apart(i)) return "search";
+    if (polynomials.apart_by_area(i)) return "search, area";
+    return {};
+}
+
+TEST(Certificates, NoneIsGivenAroundAContact)
+{
+    std::mt19937_64 bits{61};
+    std::size_t tried = 0;
+    for (const auto kind : kinds)
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 62, 150, pairs);
+            for (const oracle::Pair& pair : pairs)
+                for (const double t_max : {1.0, 0.75, 1.0 / 3.0}) {
+                    const oracle::Verdict verdict = oracle::exact_ccd(kind, pair, t_max);
+                    if (!verdict.contact) continue;
+                    const SearchParameters parameters{1e-9, t_max, false};
+                    // s = t / t_max, rounded outwards.
+                    const bool whole = t_max == 1.0;
+                    const double low = whole ? verdict.t_lo : verdict.t_lo / t_max * (1 - 0x1p-51);
+                    const double high = whole ? verdict.t_hi : std::min(1.0, verdict.t_hi / t_max * (1 + 0x1p-51));
+                    for (int k = 0; k < 6; ++k, ++tried) {
+                        const Interval i = around(low, high, bits);
+                        const bool vf = kind == oracle::Kind::vertex_face;
+                        const std::string given = vf ? lane_proof<PairKind::vertex_face>(pair, parameters, i)
+                                                     : lane_proof<PairKind::edge_edge>(pair, parameters, i);
+                        const std::string searched = vf ? search_proof<PairKind::vertex_face>(pair, parameters, i)
+                                                        : search_proof<PairKind::edge_edge>(pair, parameters, i);
+                        ASSERT_EQ(given + searched, "") << family << " t_max " << t_max << " on [" << i.a << ", " << i.b
+                                                        << "] " << kind_name(kind) << ' ' << lossless(pair);
+                    }
+                }
+        }
+    EXPECT_GT(tried, 50000u);
+}
+
+/// Leaves to look at: all if they are few; else those at the ends of the intervals that the search drops on its way,
+/// and some between.
+template <PairKind kind>
+class Leaves {
+public:
+    Leaves(const oracle::Pair& pair, const SearchParameters& p) : polynomials{coordinates(pair), p}, parameters{p} {}
+
+    /// Left end of the first leaf seen in [0, until] without a certificate; `until` if all have one.
+    double first_without_certificate(double until, std::mt19937_64& bits)
+    {
+        if (polynomials.apart()) return until;
+        const double w = parameters.leaf_width;
+        std::vector<Interval> stack{{0.0, 1.0}};
+        while (!stack.empty()) {
+            const Interval i = stack.back();
+            stack.pop_back();
+            if (i.a >= until) return until;
+            if (i.b - i.a > w && (i.b - i.a > 1.0 / 64 || !polynomials.apart(i))) {
+                const double middle = i.a + 0.5 * (i.b - i.a);
+                stack.push_back({middle, i.b});
+                stack.push_back({i.a, middle});
+                continue;
+            }
+            const double inside = i.a + std::floor(uniform(bits) * (i.b - i.a) / w) * w;
+            for (const double a : {i.a, inside, i.b - w}) {
+                const Interval leaf{a, a + w};
+                if (a < until && !polynomials.apart(leaf) && !polynomials.apart_by_area(leaf)) return a;
+            }
+        }
+        return until;
+    }
+
+private:
+    const PairPolynomials<kind> polynomials;
+    const SearchParameters& parameters;
+};
+
+template <PairKind kind>
+void expect_proofs(const std::vector<oracle::Pair>& pairs, const std::string& family, double tolerance, double t_max,
+                   TileScratch& scratch, std::size_t& apart, std::size_t& contacts)
+{
+    const oracle::Kind exact_kind = kind == PairKind::vertex_face ? oracle::Kind::vertex_face : oracle::Kind::edge_edge;
+    const SearchParameters parameters{tolerance, t_max, true};
+    const PairView view = interleaved(pairs);
+    const PairSource source{&view, {}, view.size()};
+    portable::run_tile<double>({kind, &source, 0, pairs.size(), &parameters, 1.0}, scratch);
+    std::mt19937_64 bits{63};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if ((scratch.is_undecided[i / 64] >> i % 64 & 1) != 0) continue;
+        const double found = scratch.time[i];
+        const double until = std::min(found, 1.0);
+        const double open = Leaves<kind>{pairs[i], parameters}.first_without_certificate(until, bits);
+        ASSERT_EQ(open, until) << family << " tolerance " << tolerance << " t_max " << t_max
+                               << ": no certificate for a leaf that lanes passed over: " << lossless(pairs[i]);
+        if (found > 1.0) {
+            ++apart;
+            continue;
+        }
+        ++contacts;
+        // Contact is concluded from a proof, so the exact first contact is in that very leaf.
+        const oracle::Verdict verdict = oracle::exact_ccd(exact_kind, pairs[i], t_max);
+        ASSERT_TRUE(verdict.contact) << family << ' ' << lossless(pairs[i]);
+        ASSERT_GE(verdict.t_hi, found * t_max * (1 - 0x1p-51)) << family << ' ' << lossless(pairs[i]);
+        ASSERT_LE(verdict.t_lo, (found + parameters.leaf_width) * t_max * (1 + 0x1p-51)) << family << ' ' << lossless(pairs[i]);
+    }
+}
+
+TEST(Certificates, TheSearchCanProveWhatLanesConclude)
+{
+    const auto scratch = std::make_unique<TileScratch>();
+    std::size_t apart = 0, contacts = 0;
+    struct Step {
+        double tolerance, t_max;
+    };
+    for (const Step step : {Step{0.5, 1.0}, {0.25, 1.0}, {0.06, 0.9}, {1e-2, 1.0}, {1e-5, 0.3}, {1e-9, 1.0}})
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, oracle::Kind::vertex_face, 64, 60, pairs);
+            expect_proofs<PairKind::vertex_face>(pairs, family, step.tolerance, step.t_max, *scratch, apart, contacts);
+            generate(family, oracle::Kind::edge_edge, 64, 60, pairs);
+            expect_proofs<PairKind::edge_edge>(pairs, family, step.tolerance, step.t_max, *scratch, apart, contacts);
+            if (HasFatalFailure()) return;
+        }
+    EXPECT_GT(apart, 5000u);
+    EXPECT_GT(contacts, 500u);
+}
+
+}  // namespace
+}  // namespace fastccd::testing

@@ -1,0 +1,237 @@
+// The rounding error bounds of error_bound.hpp and magnitudes.hpp against exact arithmetic, on inputs chosen to break
+// them: coefficients and values. Further files in bounds/: margins, monotone pieces, the area inclusion test.
+#include <area_inclusion.hpp>
+#include <bernstein.hpp>
+#include <magnitudes.hpp>
+
+#include "bounds/exact_number.hpp"
+#include "bounds/measured_bound.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+constexpr double u = ErrorBounds::u;
+
+/// Error / bound of every coefficient of the three cross products r1 x r2, r2 x r3, r3 x r1 on the whole interval.
+double cross_product_ratio(const Input& in)
+{
+    const Computed c{in};
+    const ExactRelativeMotion exact{in.x.data(), in.t_max};
+    double worst = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const auto q = portable::cross_product(c.r, static_cast<int>(i), static_cast<int>(j));
+        const auto twice = twice_cross(exact.at(i, 0.0), exact.at(j, 0.0), exact.at(i, 1.0), exact.at(j, 1.0));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double bound = c.bounds.quadratic() * area_of(c.scale, axis);
+            for (const Exact& error : {twice[0][axis] - Exact(2 * component(q.start, axis)),
+                                       twice[2][axis] - Exact(2 * component(q.end, axis))})
+                worst = std::max(worst, error.magnitude_in(2 * bound));
+            worst = std::max(worst, (twice[1][axis] - Exact(component(q.twice_middle, axis))).magnitude_in(bound));
+        }
+    }
+    return worst;
+}
+
+double cross_product_sum_ratio(const Input& in)
+{
+    const Computed c{in};
+    const ExactRelativeMotion r{in.x.data(), in.t_max};
+    const auto sum = portable::subtract_then_add(portable::cross_product(c.r, 1, 2), portable::cross_product(c.r, 0, 2),
+                                                 portable::cross_product(c.r, 0, 1));
+    const auto twice = twice_cross(r.at(2, 0.0) - r.at(1, 0.0), r.at(0, 0.0) - r.at(1, 0.0),
+                                   r.at(2, 1.0) - r.at(1, 1.0), r.at(0, 1.0) - r.at(1, 1.0));
+    double worst = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double bound = c.bounds.quadratic_sum() * area_of(c.scale, axis);
+        worst = std::max({worst, (twice[0][axis] - Exact(2 * component(sum.start, axis))).magnitude_in(2 * bound),
+                          (twice[1][axis] - Exact(component(sum.twice_middle, axis))).magnitude_in(bound),
+                          (twice[2][axis] - Exact(2 * component(sum.end, axis))).magnitude_in(2 * bound)});
+    }
+    return worst;
+}
+
+double cubic_ratio(const Input& in)
+{
+    const Computed c{in};
+    const auto f = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
+    const auto thrice = thrice_cubic({in.x.data(), in.t_max}, 0.0, 1.0);
+    const double bound = c.bounds.cubic() * c.scale.volume;
+    const Exact three = 3.0;
+    return std::max({(thrice[0] - three * Exact(f.start)).magnitude_in(3 * bound),
+                     (thrice[1] - Exact(f.thrice_second)).magnitude_in(bound),
+                     (thrice[2] - Exact(f.thrice_third)).magnitude_in(bound),
+                     (thrice[3] - three * Exact(f.end)).magnitude_in(3 * bound)});
+}
+
+/// On [a, b], as a multiple of the bound from extents or of the one from magnitudes.
+double cubic_on_interval_ratio(const Input& in, bool from_magnitudes)
+{
+    const Computed c{in};
+    const auto whole = portable::bernstein(portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1)));
+    const auto f = portable::on_interval(whole, in.a, in.b);
+    const auto thrice = thrice_cubic({in.x.data(), in.t_max}, in.a, in.b);
+    const double from_extents = c.bounds.cubic_on_interval() * c.scale.volume;
+    const double bound = from_magnitudes ? scalar::cubic_bound(c.r, from_extents, c.bounds) : from_extents;
+    const double computed[] = {f.c0, f.c1, f.c2, f.c3};
+    double worst = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+        worst = std::max(worst, (thrice[k] - Exact(3.0) * Exact(computed[k])).magnitude_in(3 * bound));
+    return worst;
+}
+
+double quadratic_on_interval_ratio(const Input& in, bool from_magnitudes)
+{
+    const Computed c{in};
+    const ExactRelativeMotion exact{in.x.data(), in.t_max};
+    double worst = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const auto q = portable::cross_product(c.r, static_cast<int>(i), static_cast<int>(j));
+        const auto m = scalar::cross_product_magnitude(c.r, static_cast<int>(i), static_cast<int>(j));
+        const auto twice = twice_cross(exact.at(i, in.a), exact.at(j, in.a), exact.at(i, in.b), exact.at(j, in.b));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto local = portable::on_interval(
+                portable::Quadratic<double>{component(q.start, axis), 0.5 * component(q.twice_middle, axis), component(q.end, axis)},
+                in.a, in.b);
+            const double from_extents = c.bounds.quadratic_on_interval() * area_of(c.scale, axis);
+            const double bound = from_magnitudes
+                                     ? scalar::quadratic_bound(component(m.start, axis), component(m.twice_middle, axis),
+                                                               component(m.end, axis), from_extents, c.bounds)
+                                     : from_extents;
+            const double computed[] = {local.c0, local.c1, local.c2};
+            for (std::size_t k = 0; k < 3; ++k)
+                worst = std::max(worst, (twice[k][axis] - Exact(2 * computed[k])).magnitude_in(2 * bound));
+        }
+    }
+    return worst;
+}
+
+/// Largest error of a component of r_i at the time s, or of a difference of two, in units of the axis' extent.
+double position_error(const Input& in, double s, bool differences)
+{
+    const Computed c{in};
+    const ExactRelativeMotion exact{in.x.data(), in.t_max};
+    double worst = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto position = [&](std::size_t point) {
+            return s == 0.0 ? c.r.start[point] : s == 1.0 ? c.r.end[point] : portable::position(c.r, static_cast<int>(point), s);
+        };
+        const std::size_t j = (i + 1) % 3;
+        const ExactVector at_i = exact.at(i, s), at_j = exact.at(j, s);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double extent = axis == 0 ? c.extents.x : axis == 1 ? c.extents.y : c.extents.z;
+            const double p = component(position(i), axis), q = component(position(j), axis);
+            const Exact error = differences ? at_j[axis] - at_i[axis] - Exact(q - p) : at_i[axis] - Exact(p);
+            worst = std::max(worst, error.magnitude_in(extent));
+        }
+    }
+    return worst;
+}
+
+TEST(ErrorBounds, RelativeVectors)
+{
+    // One rounding can err by u exactly; everything built on it has slack.
+    expect_bound("rho", 0.1, [](const Input& in) {
+        return position_error(in, 1.0, false) / (ErrorBounds{in.t_max}.rho * u * (1 + 0x1p-50));
+    });
+    expect_bound("rho + 3 (interpolated)", 0.1, [](const Input& in) {
+        return position_error(in, in.a, false) / ((ErrorBounds{in.t_max}.rho + 3) * u);
+    });
+}
+
+TEST(ErrorBounds, QuadraticCoefficients)
+{
+    expect_bound("quadratic", 0.02, cross_product_ratio);
+    expect_bound("quadratic_sum", 0.02, cross_product_sum_ratio);
+}
+
+TEST(ErrorBounds, CubicCoefficients) { expect_bound("cubic", 0.02, cubic_ratio); }
+
+TEST(ErrorBounds, CoefficientsOnIntervals)
+{
+    expect_bound("cubic_on_interval", 0.02, [](const Input& in) { return cubic_on_interval_ratio(in, false); });
+    expect_bound("cubic_bound (magnitudes)", 0.02, [](const Input& in) { return cubic_on_interval_ratio(in, true); });
+    expect_bound("quadratic_on_interval", 0.02, [](const Input& in) { return quadratic_on_interval_ratio(in, false); });
+    expect_bound("quadratic_bound (magnitudes)", 0.02, [](const Input& in) { return quadratic_on_interval_ratio(in, true); });
+}
+
+TEST(ErrorBounds, AxisGaps)
+{
+    expect_bound("linear_on_interval", 0.02, [](const Input& in) {
+        return position_error(in, in.a, true) / ErrorBounds{in.t_max}.linear_on_interval();
+    });
+    // Over the whole step nothing but the sign counts (below); to a shorter end there is a bound.
+    Adversary adversary{5};
+    double worst = 0;
+    for (const double t_max : {0.7, 1.0 - 0x1p-53, 1e-6, 0x1.8p-60}) {
+        const auto [input, found] = adversary.worst(
+            6, 300, [&] { return adversary.input(t_max, -12, 12); }, [&](const Input& in) { return adversary.changed(in); },
+            [](const Input& in) { return position_error(in, 1.0, true) / ErrorBounds{in.t_max}.linear(); });
+        EXPECT_LT(found, 1.0) << text(input);
+        worst = std::max(worst, found);
+    }
+    std::printf("%-34s worst error / bound: %.4f (shorter)\n", "linear", worst);
+    EXPECT_GT(worst, 0.02);
+}
+
+// With t_max = 1 the bound is 0: a positive computed gap is a proof. Coordinates a few ulps apart, or equal, relative
+// to others far away, so that differences to x0 round.
+TEST(ErrorBounds, WholeStepGapsHaveTheExactSign)
+{
+    EXPECT_EQ(ErrorBounds{1.0}.linear(), 0.0);
+    Adversary adversary{6};
+    std::size_t positive = 0, lost = 0;
+    for (int i = 0; i < 200000; ++i) {
+        const double origin = adversary.coordinate() * std::ldexp(1.0, adversary.integer(-3, 8));
+        const double p = adversary.coordinate();
+        const double q = p + adversary.integer(-4, 4) * std::ldexp(1.0, -adversary.integer(40, 54));
+        const double gap = (q - origin) - (p - origin);
+        if (gap > 0.0) {
+            ++positive;
+            ASSERT_GT(q, p) << origin;
+        }
+        lost += gap == 0.0 && q != p;
+    }
+    EXPECT_GT(positive, 10000u);
+    EXPECT_GT(lost, 1000u) << "no difference was rounded away: nothing was tested";
+}
+
+/// Products of tiny components underflow; the floors of the lanes' scales and the share that the certified search
+/// keeps of the bound from extents must cover it.
+TEST(ErrorBounds, Underflow)
+{
+    const auto below_the_lanes_scales = [](auto ratio) {
+        return [ratio](const Input& in) {
+            const double worst = ratio(in);
+            return std::isnan(worst) ? 2.0 : worst;
+        };
+    };
+    constexpr Shifts lanes{-420, 20};
+    expect_bound("quadratic, tiny", 0.02, below_the_lanes_scales(cross_product_ratio), lanes);
+    expect_bound("quadratic_sum, tiny", 0.02, below_the_lanes_scales(cross_product_sum_ratio), lanes);
+    expect_bound("cubic, tiny", 0.02, below_the_lanes_scales(cubic_ratio), lanes);
+    constexpr Shifts vanishing{-420, -360};
+    expect_bound("cubic, volume underflows", 0.0, below_the_lanes_scales(cubic_ratio), vanishing);
+    constexpr Shifts vanishing_areas{-560, -500};
+    expect_bound("quadratic, areas underflow", 0.0, below_the_lanes_scales(cross_product_ratio), vanishing_areas);
+    expect_bound("quadratic_sum, areas underflow", 0.0, below_the_lanes_scales(cross_product_sum_ratio), vanishing_areas);
+
+    // In the certified search extents are at least 2^-100, but components may be anything below.
+    const auto with_tiny_components = [](auto ratio) {
+        return [ratio](Input in) {
+            for (std::size_t c = 0; c < 24; ++c)
+                if (c % 12 / 3 != 3 && c % 3 == 1) in.x[c] = std::ldexp(in.x[c], -900);
+            for (std::size_t c = 0; c < 24; ++c)
+                if (c % 12 / 3 != 3 && c % 3 == 2) in.x[c] = std::ldexp(in.x[c], -160);
+            for (std::size_t point : {0u, 1u, 2u, 4u, 5u, 6u}) in.x[3 * point] = std::ldexp(in.x[3 * point], -20);
+            return ratio(in, true);
+        };
+    };
+    constexpr Shifts search{-99, -60};
+    expect_bound("cubic_bound, tiny components", 0.0, with_tiny_components(cubic_on_interval_ratio), search);
+    expect_bound("quadratic_bound, tiny components", 0.0, with_tiny_components(quadratic_on_interval_ratio), search);
+}
+
+}  // namespace
+}  // namespace fastccd::testing
