@@ -8,8 +8,8 @@
 
 namespace fastccd::scalar {
 
-/// Hard cap on the intervals examined for one pair; on reaching it the answer is contact, with the lower
-/// bound reached. Far above what any pair of the public data needs.
+/// Hard cap on the intervals halved for one pair; on reaching it those still waiting, some hundred at most, are examined
+/// once, and the first without a certificate is the answer: contact, with the lower bound reached. Far above what any pair of the public data needs.
 inline constexpr unsigned most_intervals = 4096;
 
 struct SearchResult {

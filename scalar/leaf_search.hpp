@@ -46,8 +46,10 @@ public:
         stack.push({0.0, 1.0});
         while (!stack.empty()) {
             const Interval i = stack.pop();
-            if (exhausted()) return i.a;
+            // Out of intervals: what is still waiting is looked at once more, but not halved.
+            const bool out_of_intervals = intervals_++ >= most_intervals;
             if (i.b - i.a < 1.0 && pair.apart(i)) continue;  // the whole interval has no certificate
+            if (out_of_intervals) return i.a;
             if (i.b - i.a > parameters.leaf_width) {
                 stack.push_halves(i);
             } else if (const double contact = contact_in_leaf(i); contact != none) {
@@ -68,9 +70,9 @@ public:
         stack.push(leaf);
         while (!stack.empty()) {
             const Interval i = stack.pop();
-            if (intervals_ >= limit) return i.a;
             ++intervals_;
             if (pair.apart(i) || pair.apart_by_area(i)) continue;
+            if (intervals_ > limit) return i.a;
             if (i.b - i.a <= std::max(i.a * finest_relative, finest_at_zero)) return i.a;
             stack.push_halves(i);
         }
@@ -85,8 +87,6 @@ private:
     /// digits to spare, or, next to time 0, to this absolute one.
     static constexpr double finest_relative = 0x1p-52;
     static constexpr double finest_at_zero = 0x1p-100;
-
-    bool exhausted() { return intervals_++ >= most_intervals; }
 
     /// The cubic has strict opposite signs at the ends, and inclusion is strict throughout.
     [[nodiscard]] bool contact_proven(Interval leaf) const
