@@ -1,5 +1,6 @@
 // What the proofs of absence claim, on whole pairs: none is given over an interval that holds an exact contact, and
 // what lanes conclude, the certified search can prove leaf by leaf.
+#include <gmpxx.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -106,6 +107,40 @@ TEST(Certificates, NoneIsGivenAroundAContact)
                 }
         }
     EXPECT_GT(tried, 50000u);
+}
+
+/// A flat face, or an edge, that reaches a point at rest, or a crossing edge, along one axis by less than rounding shows:
+/// the exact gap at t_max is zero or negative, the computed one positive.
+TEST(Certificates, ContactAtTheVeryEndOfAShorterStepIsNotRoundedAway)
+{
+    std::mt19937_64 bits{65};
+    std::size_t rounded_away = 0;
+    for (int i = 0; i < 1000000 && rounded_away < 200; ++i) {
+        const double t_max = 0.001 + 0.9 * uniform(bits), from = 0.5 + uniform(bits);
+        const double to = -(1 - t_max) * from / t_max * (1 + static_cast<double>(bits() % 5) * 0x1p-53);
+        const double computed = portable::lerp(from, to, t_max);
+        if (!(computed > 0.0)) continue;
+        const mpq_class exact = (mpq_class(1) - mpq_class(t_max)) * mpq_class(from) + mpq_class(t_max) * mpq_class(to);
+        if (sgn(exact) > 0) continue;
+        ++rounded_away;
+        const auto axis = static_cast<std::size_t>(bits() % 3);
+        for (const auto kind : kinds) {
+            oracle::Pair pair = kind == oracle::Kind::vertex_face
+                                    ? oracle::Pair{{{0, 0, 0}, {0, -1, -1}, {0, 2, -1}, {0, -1, 2}, {0, 0, 0}, {0, -1, -1}, {0, 2, -1}, {0, -1, 2}}}
+                                    : oracle::Pair{{{0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 2}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 2}}};
+            for (std::size_t point = kind == oracle::Kind::vertex_face ? 1 : 2; point < 4; ++point)
+                pair[point][0] = from, pair[point + 4][0] = to;
+            for (auto& point : pair) std::swap(point[0], point[axis]);
+            ASSERT_TRUE(oracle::exact_ccd(kind, pair, t_max).contact);
+            for (const bool reference : {true, false}) {
+                Options options;
+                options.t_max = t_max;
+                options.reference = reference;
+                ASSERT_LE(answer(kind, interleaved({pair}), options).toi[0], t_max) << "missed: " << t_max << ' ' << lossless(pair);
+            }
+        }
+    }
+    EXPECT_GT(rounded_away, 100u);
 }
 
 /// Leaves to look at: all if they are few; else those at the ends of the intervals that the search drops on its way,
