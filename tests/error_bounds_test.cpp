@@ -3,6 +3,7 @@
 #include <area_inclusion.hpp>
 #include <bernstein.hpp>
 #include <magnitudes.hpp>
+#include <search_parameters.hpp>
 
 #include "bounds/exact_number.hpp"
 #include "bounds/measured_bound.hpp"
@@ -195,6 +196,22 @@ TEST(ErrorBounds, WholeStepGapsHaveTheExactSign)
     }
     EXPECT_GT(positive, 10000u);
     EXPECT_GT(lost, 1000u) << "no difference was rounded away: nothing was tested";
+}
+
+/// A parameter s that is a lower bound stays one as a time s t_max, and loses three roundings at most.
+TEST(ErrorBounds, TimesAreRoundedDown)
+{
+    Adversary adversary{7};
+    std::size_t products_rounded_up = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const double t_max = adversary.chance(0.5) ? adversary.uniform(0, 1) : std::ldexp(adversary.uniform(0.5, 1), -adversary.integer(0, 60));
+        const double s = adversary.time();
+        const Exact exact = Exact(s) * Exact(t_max), time = SearchParameters{1e-9, t_max, false}.time(s);
+        ASSERT_FALSE(exact < time) << s << ' ' << t_max;
+        ASSERT_FALSE(time < exact * Exact(1 - 0x1p-50)) << s << ' ' << t_max;
+        products_rounded_up += exact < Exact(s * t_max);
+    }
+    EXPECT_GT(products_rounded_up, 1000u);
 }
 
 /// Products of tiny components underflow; the floors of the lanes' scales and the share that the certified search
