@@ -1,8 +1,6 @@
 // Vertex records and the checks of the indices.
 #include <fastccd/indexed.hpp>
 
-#include <new>
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -35,7 +33,7 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     if (!status_.ok() || vertex_count_ == 0) return;
 
     constexpr std::size_t record = 8;
-    records_.reset(static_cast<double*>(::operator new(vertex_count_ * record * sizeof(double), std::align_val_t{64})));
+    records_ = allocate_aligned(vertex_count_ * record);
     double* const records = records_.get();
     constexpr std::size_t grain = 4096;  // 256 KiB of records a task
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertex_count_, grain), [&](const auto& range) {

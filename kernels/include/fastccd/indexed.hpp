@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 
+#include <fastccd/aligned_doubles.hpp>
 #include <fastccd/options.hpp>
 
 namespace fastccd {
@@ -103,11 +104,7 @@ public:
     [[nodiscard]] const double* records() const noexcept { return records_.get(); }
 
 private:
-    struct Release {
-        void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{64}); }
-    };
-
-    std::unique_ptr<double[], Release> records_;
+    AlignedDoubles records_;
     std::size_t vertex_count_ = 0;
     IndexView faces_, edges_;
     Status status_{Error::wrong_size};

@@ -3,10 +3,9 @@
 
 #include <cstddef>
 #include <cstring>
-#include <memory>
-#include <new>
 #include <span>
 
+#include <fastccd/aligned_doubles.hpp>
 #include <fastccd/pair_view.hpp>
 
 namespace fastccd {
@@ -19,10 +18,10 @@ public:
 
     explicit PairBuffer(std::size_t size) : size_{size}
     {
-        const std::size_t bytes = block_count() * block_coordinates * sizeof(double);
-        if (bytes == 0) return;
-        data_.reset(static_cast<double*>(::operator new(bytes, std::align_val_t{alignment})));
-        std::memset(data_.get(), 0, bytes);
+        const std::size_t count = block_count() * block_coordinates;
+        if (count == 0) return;
+        data_ = allocate_aligned(count);
+        std::memset(data_.get(), 0, count * sizeof(double));
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -43,18 +42,12 @@ public:
     [[nodiscard]] PairView view() const noexcept { return PairView::blocked(data_.get(), size_); }
 
 private:
-    static constexpr std::size_t alignment = 64;  // one cache line, one AVX-512 register
-
-    struct Release {
-        void operator()(double* p) const noexcept { ::operator delete(p, std::align_val_t{alignment}); }
-    };
-
     [[nodiscard]] static std::size_t index(std::size_t i, std::size_t c) noexcept
     {
         return (i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs;
     }
 
-    std::unique_ptr<double[], Release> data_;
+    AlignedDoubles data_;
     std::size_t size_ = 0;
 };
 
