@@ -78,7 +78,9 @@ bool has_root(const SearchParameters& parameters, PairRecord<double>& record)
         record.threshold = pieces.threshold;
         record.low = pieces.time[i];
         record.high = pieces.time[i + 1];
-        record.guess = clipped_steps<double>(record.f, {record.low, record.high}, (record.low + record.high) * 0.5, 2);
+        record.guess = (record.low + record.high) * 0.5;
+        for (int step = 0; step < coarse_steps; ++step)
+            record.guess = clipped_step<double>(record.f, {record.low, record.high}, record.guess);
         return true;
     }
     return false;

@@ -104,9 +104,10 @@ unsigned sign_change(const bench::StageInput& input)
 /// Householder's steps as the pipeline takes them before it dismisses roots, clipped to the piece.
 unsigned householder_clipped(const bench::StageInput& input)
 {
-    return for_each_batch(input.roots, [](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
-        const L middle = (root.low + root.high) * broadcast<L>(0.5);
-        const L guess = clipped_steps<L>(root.f, {root.low, root.high}, middle, coarse_steps);
+    return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        compute_again(root, *input.parameters);
+        L guess = (root.low + root.high) * broadcast<L>(0.5);
+        for (int step = 0; step < coarse_steps; ++step) guess = clipped_step<L>(root.f, {root.low, root.high}, guess);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
     });
@@ -115,9 +116,12 @@ unsigned householder_clipped(const bench::StageInput& input)
 /// And as it takes them to the end, which keep a bracket.
 unsigned householder_bracketed(const bench::StageInput& input)
 {
-    return for_each_batch(input.roots, [](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+    return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        compute_again(root, *input.parameters);
         const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
-        const L guess = bracketed_steps<L>(root.f, rising, {root.low, root.high}, root.guess, fine_steps);
+        Bracket<L> bracket{root.low, root.high};
+        L guess = root.guess;
+        for (int step = 0; step < fine_steps; ++step) guess = bracketed_step(root.f, rising, bracket, guess);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
     });
@@ -126,7 +130,8 @@ unsigned householder_bracketed(const bench::StageInput& input)
 template <PairKind kind>
 unsigned projected(const bench::StageInput& input)
 {
-    return for_each_batch(input.roots, [&](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+    return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        compute_again(root, *input.parameters);
         const Inclusion<L> found =
             projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(coarse_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(found.absent);
@@ -136,7 +141,8 @@ unsigned projected(const bench::StageInput& input)
 template <PairKind kind>
 unsigned area(const bench::StageInput& input)
 {
-    return for_each_batch(input.roots, [&](const PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+    return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
+        compute_again(root, *input.parameters);
         const LaneMask<L> absent =
             area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(coarse_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(absent);

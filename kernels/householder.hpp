@@ -41,32 +41,27 @@ struct Bracket {
     L low, high;
 };
 
-/// A few steps from s, each clipped to the bracket: close to most roots in the fewest instructions.
+/// One step from s, clipped to the bracket: close to most roots in the fewest instructions.
 template <class L>
-FASTCCD_INLINE L clipped_steps(const PowerCubic<L>& f, const Bracket<L>& bracket, L s, int steps)
+FASTCCD_INLINE L clipped_step(const PowerCubic<L>& f, const Bracket<L>& bracket, L s)
 {
-    for (int step = 0; step < steps; ++step)
-        s = max(min(householder_guess(f, s, evaluate(f, s)), bracket.high), bracket.low);
-    return s;
+    return max(min(householder_guess(f, s, evaluate(f, s)), bracket.high), bracket.low);
 }
 
-/// Steps from s that close the bracket around the root of a monotone f by the sign of each value, and bisect
+/// A step from s that closes the bracket around the root of a monotone f by the sign of f(s), and bisects
 /// where Householder's guess leaves it. `rising` where f is negative at the low end.
 template <class L>
-FASTCCD_INLINE L bracketed_steps(const PowerCubic<L>& f, LaneMask<L> rising, Bracket<L> bracket, L s, int steps)
+FASTCCD_INLINE L bracketed_step(const PowerCubic<L>& f, LaneMask<L> rising, Bracket<L>& bracket, L s)
 {
-    for (int step = 0; step < steps; ++step) {
-        const L value = evaluate(f, s);
-        const LaneMask<L> negative = less(value, broadcast<L>(0.0));
-        const LaneMask<L> root_after = (negative & rising) | !(negative | rising);
-        bracket.low = select<L>(root_after, s, bracket.low);
-        bracket.high = select<L>(root_after, bracket.high, s);
-        const L next = householder_guess(f, s, value);
-        // Closed: a converged guess is an end of its bracket.
-        const LaneMask<L> inside = less_equal(bracket.low, next) & less_equal(next, bracket.high);
-        s = select<L>(inside, next, (bracket.low + bracket.high) * broadcast<L>(0.5));
-    }
-    return s;
+    const L value = evaluate(f, s);
+    const LaneMask<L> negative = less(value, broadcast<L>(0.0));
+    const LaneMask<L> root_after = (negative & rising) | !(negative | rising);
+    bracket.low = select<L>(root_after, s, bracket.low);
+    bracket.high = select<L>(root_after, bracket.high, s);
+    const L next = householder_guess(f, s, value);
+    // Closed: a converged guess is an end of its bracket.
+    const LaneMask<L> inside = less_equal(bracket.low, next) & less_equal(next, bracket.high);
+    return select<L>(inside, next, (bracket.low + bracket.high) * broadcast<L>(0.5));
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

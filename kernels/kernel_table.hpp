@@ -20,9 +20,9 @@ inline constexpr std::size_t tile_pairs = 1024;
 template <unsigned field_count>
 struct LaneQueue {
     static constexpr unsigned fields = field_count;
-    /// A stage drains the queue when it holds this many entries; one batch adds at most 2 per lane ...
+    /// A stage drains the queue when it holds this many entries; one batch adds at most 1 per lane ...
     static constexpr unsigned drain_at = 64;
-    static constexpr unsigned most_added = 2 * 8;
+    static constexpr unsigned most_added = 8;
     /// ... and storing the last ones, or reading them, touches a full batch.
     static constexpr unsigned capacity = drain_at + most_added + 8;
 
@@ -31,7 +31,29 @@ struct LaneQueue {
 };
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<27>;
-using RootQueue = LaneQueue<31>;
+using RootQueue = LaneQueue<22>;
+
+/// What the search for roots works on, next to the rows of `candidates`.
+struct RootSearch {
+    alignas(64) double f[4][PairQueue::capacity];  ///< The cubic in the power basis.
+    alignas(64) double threshold[PairQueue::capacity];
+    alignas(64) double low[PairQueue::capacity], high[PairQueue::capacity];  ///< The piece in which the cubic changes sign.
+    alignas(64) double guess[PairQueue::capacity];
+    alignas(64) double later_low[PairQueue::capacity], later_high[PairQueue::capacity];  ///< The piece after that.
+    /// Per batch, bits of the lanes that have a first, second, third such piece.
+    unsigned pieces[3][PairQueue::capacity];
+};
+
+/// What refinement works on, next to the rows of `survivors`.
+struct Refinement {
+    alignas(64) double f[4][RootQueue::capacity];
+    alignas(64) double low[RootQueue::capacity], high[RootQueue::capacity];  ///< A bracket that closes around the root.
+    alignas(64) double slope[RootQueue::capacity];                           ///< Positive where f rises over the piece.
+    alignas(64) double guess[RootQueue::capacity];
+};
+
+/// Blocks of indexed pairs whose vertices are asked for before they are read.
+inline constexpr std::size_t indexed_ahead = 2;
 
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {
@@ -42,9 +64,13 @@ struct TileScratch {
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
     PairQueue screened;      ///< Pairs without a linear or cubic certificate.
-    RootQueue later_pieces;  ///< Second and third pieces with a sign change.
+    PairQueue candidates;    ///< Pairs without an area certificate either.
+    RootSearch search;
     RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.
+    Refinement refinement;
     alignas(64) double block[block_coordinates];  ///< A block in the native layout, where the input is not.
+    const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
+    const double* prefetched;  ///< How far packed input has been asked for.
 };
 
 /// `count` pairs of the source from `first` on; first is a multiple of tile_pairs, count at most tile_pairs.

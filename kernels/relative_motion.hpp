@@ -59,4 +59,18 @@ struct Extents {
     L x, y, z;
 };
 
+template <class L>
+FASTCCD_INLINE Extents<L> extents(const RelativeMotion<L>& r)
+{
+    const auto along = [&](auto component) FASTCCD_INLINE_LAMBDA {
+        const auto largest = [&](const Vector3<L>(&v)[3]) FASTCCD_INLINE_LAMBDA {
+            return max(abs(component(v[0])), abs(component(v[1])), abs(component(v[2])));
+        };
+        return max(largest(r.start), largest(r.end));
+    };
+    return {along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }),
+            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }),
+            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; })};
+}
+
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -28,24 +28,51 @@ struct MonotonePieces {
     PowerCubic<L> f;
     L time[4];           ///< 0, the extrema of f inside (0, 1) in order (or 0 or 1), 1.
     L value[4];          ///< f there.
-    L threshold;         ///< A value certainly has its sign, with margin, if it is beyond this.
+    L threshold;         ///< See sign_threshold.
     LaneMask<L> certain; ///< All four values are beyond the threshold.
 };
 
+/// A value of f certainly has its sign, with margin, if it is beyond this.
 /// threshold = monotone_piece() B + hull_deviation w^2 B + (bounds of the certified search) V: with two end
 /// values beyond it, f is far enough from zero in the whole piece that every interval of width
 /// w = leaf_width, inside the piece or across its ends, passes the search's cubic certificate.
 template <class L>
+FASTCCD_INLINE L sign_threshold(const Cubic<L>& f, L volume, const ErrorBounds& bounds, double leaf_width)
+{
+    const L B = max(largest(f), broadcast<L>(0.0) - smallest(f));
+    const double per_B = ErrorBounds::monotone_piece() + ErrorBounds::hull_deviation * leaf_width * leaf_width;
+    const double per_V = bounds.cubic_on_interval_lanes();
+    return broadcast<L>(per_B) * B + broadcast<L>(per_V) * volume;
+}
+
+/// f' / 3 = d0 + 2 h s + A s^2 from the Bernstein coefficients of f.
+template <class L>
+struct ThirdOfSlope {
+    L d0, h, A;
+};
+
+template <class L>
+FASTCCD_INLINE ThirdOfSlope<L> third_of_slope(const Cubic<L>& f)
+{
+    const L d0 = f.c1 - f.c0, d1 = f.c2 - f.c1, d2 = f.c3 - f.c2;
+    return {d0, d1 - d0, (d0 + d2) - (d1 + d1)};
+}
+
+template <class L>
+FASTCCD_INLINE PowerCubic<L> power_basis(const Cubic<L>& f)
+{
+    const L three = broadcast<L>(3.0);
+    const ThirdOfSlope<L> g = third_of_slope(f);
+    return {f.c0, three * g.d0, three * g.h, g.A};
+}
+
+template <class L>
 FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, const ErrorBounds& bounds,
                                                  double leaf_width)
 {
-    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), three = broadcast<L>(3.0);
-    // f' / 3 = C + 2 h s + A s^2
-    const L d0 = f.c1 - f.c0, d1 = f.c2 - f.c1, d2 = f.c3 - f.c2;
-    const L h = d1 - d0;
-    const L A = (d0 + d2) - (d1 + d1);
-
-    // Stable roots: q = -(h + sign(h) sqrt D), x1 = q / A, x2 = C / q.
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    // Stable roots of d0 + 2 h s + A s^2: q = -(h + sign(h) sqrt D), x1 = q / A, x2 = d0 / q.
+    const auto [d0, h, A] = third_of_slope(f);
     const L D = h * h - A * d0;
     const L root = sqrt(max(D, zero));
     const L q = select<L>(less(h, zero), root - h, zero - (root + h));
@@ -58,7 +85,7 @@ FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, co
     const L second = select<L>(none, zero, max(x1, x2));
 
     MonotonePieces<L> pieces;
-    pieces.f = {f.c0, three * d0, three * h, A};
+    pieces.f = power_basis(f);
     pieces.time[0] = zero;
     pieces.time[1] = first;
     pieces.time[2] = second;
@@ -67,11 +94,7 @@ FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, co
     pieces.value[1] = evaluate(pieces.f, first);
     pieces.value[2] = evaluate(pieces.f, second);
     pieces.value[3] = f.c3;
-
-    const L B = max(largest(f), zero - smallest(f));
-    const double per_B = ErrorBounds::monotone_piece() + ErrorBounds::hull_deviation * leaf_width * leaf_width;
-    const double per_V = bounds.cubic_on_interval_lanes();
-    pieces.threshold = broadcast<L>(per_B) * B + broadcast<L>(per_V) * volume;
+    pieces.threshold = sign_threshold(f, volume, bounds, leaf_width);
     const L closest = min(min(abs(pieces.value[0]), abs(pieces.value[1])),
                           min(abs(pieces.value[2]), abs(pieces.value[3])));
     pieces.certain = less(pieces.threshold, closest);

@@ -5,6 +5,7 @@
 
 #include <fastccd/options.hpp>
 #include <fastccd/pair_view.hpp>
+#include <kernel_table.hpp>
 #include <lane.hpp>
 #include <pair_source.hpp>
 
@@ -67,86 +68,145 @@ FASTCCD_INLINE bool rows_are_contiguous(const IndexedSource& source)
 
 inline constexpr std::size_t vertex_record_size = 8;
 
-/// 8 pairs of indices: whole vertex records, transposed in registers.
-template <PairKind kind, class Batch, bool contiguous>
-FASTCCD_INLINE void gather_records(const IndexedSource& source, const std::int32_t* pairs, double* block)
+/// Finds the vertex records of the 8 pairs at `pairs`, and asks for them.
+template <PairKind kind, bool contiguous>
+FASTCCD_INLINE void resolve_pairs(const IndexedSource& source, const std::int32_t* pairs, const double* (&records)[4][block_pairs])
 {
-    constexpr unsigned group = Lane<Batch>::transposed_records;
-    for (unsigned lane = 0; lane < block_pairs; lane += group) {
-        const double* records[4][group];
-        for (unsigned k = 0; k < group; ++k) {
-            std::size_t vertex[4];
-            pair_vertices<kind, contiguous>(source, pairs + 2 * (lane + k), vertex);
-            for (int point = 0; point < 4; ++point)
-                records[point][k] = source.records + vertex[point] * vertex_record_size;
+    // A copy, because the compiler cannot know that nothing stored below changes the original.
+    const IndexedSource local = source;
+    for (std::size_t lane = 0; lane < block_pairs; ++lane) {
+        std::size_t vertex[4];
+        pair_vertices<kind, contiguous>(local, pairs + 2 * lane, vertex);
+        for (int point = 0; point < 4; ++point) {
+            const double* const record = local.records + vertex[point] * vertex_record_size;
+            __builtin_prefetch(record);
+            records[point][lane] = record;
         }
-        for (int point = 0; point < 4; ++point)
-            Lane<Batch>::transpose_records(records[point], block + 3 * point * block_pairs + lane,
-                                           block + (12 + 3 * point) * block_pairs + lane, block_pairs);
     }
 }
 
-/// Lanes past `count` repeat the last pair.
-template <PairKind kind, class Batch>
-FASTCCD_INLINE void gather_block(const IndexedSource& source, std::size_t first, std::size_t count, double* block)
+/// The same for the block that starts at pair `first`; the last pair stands for those past the end.
+template <PairKind kind>
+FASTCCD_INLINE void resolve_block(const PairSource& pairs, std::size_t first, const double* (&records)[4][block_pairs])
 {
-    const std::int32_t* pairs = source.pairs + 2 * first;
+    const std::int32_t* ids = pairs.indexed.pairs + 2 * first;
     std::int32_t padded[2 * block_pairs];
-    if (count < block_pairs) {
-        for (std::size_t lane = 0; lane < block_pairs; ++lane)
-            for (std::size_t k = 0; k < 2; ++k) padded[2 * lane + k] = pairs[2 * (lane < count ? lane : count - 1) + k];
-        pairs = padded;
+    if (pairs.size < first + block_pairs) {
+        for (std::size_t lane = 0; lane < block_pairs; ++lane) {
+            const std::size_t pair = first + lane < pairs.size ? first + lane : pairs.size - 1;
+            for (std::size_t k = 0; k < 2; ++k) padded[2 * lane + k] = pairs.indexed.pairs[2 * pair + k];
+        }
+        ids = padded;
     }
-    if (rows_are_contiguous<kind>(source))
-        gather_records<kind, Batch, true>(source, pairs, block);
+    if (rows_are_contiguous<kind>(pairs.indexed))
+        resolve_pairs<kind, true>(pairs.indexed, ids, records);
     else
-        gather_records<kind, Batch, false>(source, pairs, block);
+        resolve_pairs<kind, false>(pairs.indexed, ids, records);
 }
 
-/// Blocks ahead of the one being read that are asked for: memory latency over the time one block takes.
-inline constexpr std::size_t prefetch_blocks = 4;
-
-FASTCCD_INLINE void prefetch_block(const double* block)
+/// Whole vertex records, transposed in registers.
+template <class Batch>
+FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pairs], double* block)
 {
-    for (std::size_t k = 0; k < block_coordinates; k += block_pairs)
-        __builtin_prefetch(block + prefetch_blocks * block_coordinates + k);
+    for (unsigned lane = 0; lane < block_pairs; lane += Lane<Batch>::transposed_records)
+        for (int point = 0; point < 4; ++point)
+            Lane<Batch>::transpose_records(&records[point][lane], block + 3 * point * block_pairs + lane,
+                                           block + (12 + 3 * point) * block_pairs + lane, block_pairs);
 }
+
+/// Asks for packed pairs ahead of the one being read. Reading alone would ask in bursts, and a core has 10 to 16 requests under
+/// way at once; so the later stages, which read nothing, ask as well, further ahead.
+class Prefetcher {
+public:
+    /// `prefetched` is where the tile before this one has got to.
+    FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first, const double* prefetched)
+    {
+        const bool native = source.view != nullptr && source.view->layout() == PairView::Layout::blocked &&
+                            source.view->scalar() == PairView::Scalar::float64;
+        if (!native) return;
+        const double* const data = static_cast<const double*>(source.view->data());
+        end_ = data + (source.size + block_pairs - 1) / block_pairs * block_coordinates;
+        next_ = data + first * pair_coordinates;
+        limit_ = next_;
+        if (next_ <= prefetched && prefetched <= ahead(most_blocks)) next_ = prefetched;
+    }
+
+    /// Before the block at `block` is read.
+    FASTCCD_INLINE void at_block(const double* block)
+    {
+        if (end_ == nullptr) return;
+        limit_ = block;
+        const double* const least = ahead(least_blocks);
+        for (; next_ < least; next_ += line) __builtin_prefetch(next_, 0, locality);
+        limit_ = ahead(most_blocks);
+    }
+
+    /// While other work is being done.
+    FASTCCD_INLINE void lines(unsigned count)
+    {
+        if (next_ >= limit_) return;
+        for (unsigned k = 0; k < count; ++k) __builtin_prefetch(next_ + k * line, 0, locality);
+        next_ += count * line;
+    }
+
+    [[nodiscard]] FASTCCD_INLINE const double* prefetched() const { return next_; }
+
+private:
+    static constexpr std::size_t line = 8;
+    static constexpr int locality = 2;  ///< Second-level cache: the first is full of queues.
+    static constexpr std::size_t least_blocks = 4, most_blocks = 40;
+
+    FASTCCD_INLINE const double* ahead(std::size_t blocks) const
+    {
+        return static_cast<std::size_t>(end_ - limit_) > blocks * block_coordinates ? limit_ + blocks * block_coordinates : end_;
+    }
+
+    const double* next_ = nullptr;
+    const double* limit_ = nullptr;
+    const double* end_ = nullptr;
+};
 
 /// Block that starts at pair `first` (a multiple of 8) and has `count` <= 8 pairs. Zero-copy for blocked
-/// double; otherwise `scratch` is filled and returned.
+/// double; otherwise scratch.block is filled and returned.
 template <PairKind kind, class Batch>
-FASTCCD_INLINE const double* native_block(const PairSource& source, std::size_t first, std::size_t count, double* scratch)
+FASTCCD_INLINE const double* native_block(const TileRequest& tile, std::size_t i, std::size_t count, TileScratch& scratch)
 {
+    const PairSource& source = *tile.source;
+    const std::size_t first = tile.first + i;
+    double* const block = scratch.block;
     if (source.view == nullptr) {
-        gather_block<kind, Batch>(source.indexed, first, count, scratch);
-        return scratch;
+        const auto records_of = [&](std::size_t j) FASTCCD_INLINE_LAMBDA -> auto& {
+            return scratch.records[j / block_pairs % (indexed_ahead + 1)];
+        };
+        if (i == 0)
+            for (std::size_t j = 0; j < indexed_ahead * block_pairs; j += block_pairs)
+                resolve_block<kind>(source, first + j, records_of(j));
+        resolve_block<kind>(source, first + indexed_ahead * block_pairs, records_of(i + indexed_ahead * block_pairs));
+        transpose_block<Batch>(records_of(i), block);
+        return block;
     }
     const PairView& pairs = *source.view;
     const bool wide = pairs.scalar() == PairView::Scalar::float64;
     const std::size_t offset = first * pair_coordinates;
     switch (pairs.layout()) {
         case PairView::Layout::blocked:
-            if (wide) {
-                const double* block = static_cast<const double*>(pairs.data()) + offset;
-                prefetch_block(block);
-                return block;
-            }
-            widen_block(static_cast<const float*>(pairs.data()) + offset, scratch);
+            if (wide) return static_cast<const double*>(pairs.data()) + offset;
+            widen_block(static_cast<const float*>(pairs.data()) + offset, block);
             break;
         case PairView::Layout::interleaved:
             if (wide)
-                pack_interleaved(static_cast<const double*>(pairs.data()) + offset, count, scratch);
+                pack_interleaved(static_cast<const double*>(pairs.data()) + offset, count, block);
             else
-                pack_interleaved(static_cast<const float*>(pairs.data()) + offset, count, scratch);
+                pack_interleaved(static_cast<const float*>(pairs.data()) + offset, count, block);
             break;
         case PairView::Layout::strided:
             if (wide)
-                pack_strided<double>(pairs, first, count, scratch);
+                pack_strided<double>(pairs, first, count, block);
             else
-                pack_strided<float>(pairs, first, count, scratch);
+                pack_strided<float>(pairs, first, count, block);
             break;
     }
-    return scratch;
+    return block;
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

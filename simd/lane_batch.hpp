@@ -87,20 +87,44 @@ struct BatchTraits<xsimd::avx2> {
 #endif
 
 #if XSIMD_WITH_AVX512BW
+/// The two doubles at offset in a, b, c, d. Loads that broadcast into part of a register do not need the one port that shuffles.
+FASTCCD_INLINE __m512d four_halves(const double* a, const double* b, const double* c, const double* d, int offset)
+{
+    __m512d halves = _mm512_maskz_broadcast_f64x2(0x03, _mm_loadu_pd(a + offset));
+    halves = _mm512_mask_broadcast_f64x2(halves, 0x0c, _mm_loadu_pd(b + offset));
+    halves = _mm512_mask_broadcast_f64x2(halves, 0x30, _mm_loadu_pd(c + offset));
+    return _mm512_mask_broadcast_f64x2(halves, 0xc0, _mm_loadu_pd(d + offset));
+}
+
+FASTCCD_INLINE void transpose_eight_records(const double* const* records, double* start, double* end, std::size_t stride)
+{
+    // Copies: the compiler must take it that the stores below might change the originals.
+    const double *const r0 = records[0], *const r1 = records[1], *const r2 = records[2], *const r3 = records[3];
+    const double *const r4 = records[4], *const r5 = records[5], *const r6 = records[6], *const r7 = records[7];
+    double* const rows[6] = {start, start + stride, start + 2 * stride, end, end + stride, end + 2 * stride};
+    for (int k = 0; k < 6; k += 2) {
+        const __m512d even = four_halves(r0, r2, r4, r6, k), odd = four_halves(r1, r3, r5, r7, k);
+        _mm512_storeu_pd(rows[k], _mm512_unpacklo_pd(even, odd));
+        _mm512_storeu_pd(rows[k + 1], _mm512_unpackhi_pd(even, odd));
+    }
+}
+
 template <>
 struct BatchTraits<xsimd::avx512bw> {
     static FASTCCD_INLINE unsigned bits(__mmask8 m) { return m; }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m512d x)
     {
-        // Compress in a register, then store all of it: storing through a mask is microcoded on some machines.
-        _mm512_storeu_pd(p, _mm512_maskz_compress_pd(static_cast<__mmask8>(bits), x));
+        // A push moves some twenty registers by the same bits: the order once, then one permutation each. Compressing is two
+        // instructions each time, and storing through a mask is microcoded on some machines.
+        const __m512i order = _mm512_maskz_compress_epi64(static_cast<__mmask8>(bits), _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0));
+        _mm512_storeu_pd(p, _mm512_permutexvar_pd(order, x));
     }
     static FASTCCD_INLINE __m512d min(__m512d a, __m512d b) { return _mm512_min_pd(a, b); }
     static FASTCCD_INLINE __m512d max(__m512d a, __m512d b) { return _mm512_max_pd(a, b); }
-    static constexpr unsigned transposed_records = 4;
+    static constexpr unsigned transposed_records = 8;
     static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
     {
-        transpose_four_records(records, start, end, stride);
+        transpose_eight_records(records, start, end, stride);
     }
 };
 #endif

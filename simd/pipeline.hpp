@@ -1,14 +1,17 @@
 // The stages of the narrow phase over one tile:
 //
-//     block -> length, volume certificates -> [screened] -> area certificate, sign-change intervals,
-//                     |                                       first Householder steps, coarse inclusion
-//                     v                                           |             |               |
-//                   apart                              [later_pieces] again   apart         [survivors]
-//                                                                                                 |
-//          certified search  <- undecided, here and above -  refinement, leaf, inclusion <--------+
-//                                                                  |
-//                                                                  v
-//                                                           contact or apart
+//     block -> length, volume certificates -> [screened] -> area certificate -> [candidates] -> sign-change intervals,
+//                     |                                           |              first Householder steps, coarse inclusion
+//                     v                                           v                               |               |
+//                   apart                                       apart                           apart        [survivors]
+//                                                                                                                 |
+//                          certified search  <- undecided, here and above -  refinement, leaf, inclusion <--------+
+//                                                                                  |
+//                                                                                  v
+//                                                                           contact or apart
+//
+// Queues pack the lanes that a stage leaves, so that the next one runs on full batches. Packing costs two instructions
+// a field, so batches that are mostly in use skip [screened].
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
@@ -32,19 +35,22 @@ class Pipeline {
 public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
-        Pipeline pipeline{*request.parameters, request.cutoff, scratch};
+        Pipeline pipeline{request, scratch};
         pipeline.prepare();
         for (std::size_t i = 0; i < request.count; i += block_pairs) {
             const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
-            const double* block = native_block<kind, L>(*request.source, request.first + i, count, scratch.block);
+            const double* block = native_block<kind, L>(request, i, count, scratch);
+            pipeline.prefetcher.at_block(block);
             for (unsigned lane = 0; lane < count; lane += width) {
                 pipeline.screen(block + lane, static_cast<double>(i + lane), all_lanes(request.count - i - lane));
-                if (scratch.screened.size >= PairQueue::drain_at) pipeline.find_roots(false);
+                if (scratch.screened.size >= PairQueue::drain_at) pipeline.compare_areas(false);
+                if (scratch.candidates.size >= PairQueue::drain_at) pipeline.find_roots(false);
             }
         }
+        pipeline.compare_areas(true);
         pipeline.find_roots(true);
-        pipeline.reject_later_pieces(true);
         pipeline.refine(true);
+        scratch.prefetched = pipeline.prefetcher.prefetched();
     }
 
 private:
@@ -54,9 +60,11 @@ private:
     const CertificateBounds whole, early;
     const double cutoff;
     TileScratch& scratch;
+    Prefetcher prefetcher;
 
-    FASTCCD_INLINE Pipeline(const SearchParameters& p, double c, TileScratch& s)
-        : parameters{p}, whole{p.bounds.certificates()}, early{p.bounds.early()}, cutoff{c}, scratch{s}
+    FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& s)
+        : parameters{*request.parameters}, whole{parameters.bounds.certificates()}, early{parameters.bounds.early()},
+          cutoff{request.cutoff}, scratch{s}, prefetcher{*request.source, request.first, s.prefetched}
     {
     }
 
@@ -67,7 +75,7 @@ private:
         __builtin_memset(scratch.roots, 0, sizeof scratch.roots);
         __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
         __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
-        scratch.screened.size = scratch.later_pieces.size = scratch.survivors.size = 0;
+        scratch.screened.size = scratch.candidates.size = scratch.survivors.size = 0;
     }
 
     /// Bits of a batch of which `left` lanes are in use.
@@ -86,8 +94,7 @@ private:
             set_bit(scratch.is_undecided, static_cast<unsigned>(pairs[__builtin_ctz(lanes)]));
     }
 
-    /// Length and volume certificates on the whole interval. Most lanes end here; the others are packed, so that
-    /// the costlier area certificate runs on full batches.
+    /// Length and volume certificates on the whole interval. In scenes most lanes end here.
     FASTCCD_INLINE void screen(const double* coordinates, double first, unsigned lanes)
     {
         PairRecord<L> record;
@@ -104,7 +111,29 @@ private:
         if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
         unsigned kept = decidable & ~Lane<L>::bits(apart);
         if (kept != 0 && cutoff < 1.0) kept &= ~Lane<L>::bits(apart_until_cutoff(record));
-        if (kept != 0) push(scratch.screened, kept, record);
+        if (2 * static_cast<unsigned>(__builtin_popcount(kept)) >= width)
+            compare_areas(record, kept);
+        else if (kept != 0)
+            push(scratch.screened, kept, record);
+    }
+
+    /// Area certificate on the whole interval.
+    FASTCCD_INLINE void compare_areas(const PairRecord<L>& record, unsigned lanes)
+    {
+        const auto apart = visit_edge_functions<kind>(
+            record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                return quadratic_certificate<kind>(p, q, t, s, record.scale, whole);
+            });
+        lanes &= ~Lane<L>::bits(apart);
+        if (lanes != 0) push(scratch.candidates, lanes, record);
+    }
+
+    void compare_areas(bool all)
+    {
+        drain(scratch.screened, all, [&](const PairRecord<L>& record, unsigned lanes) FASTCCD_INLINE_LAMBDA {
+            compare_areas(record, lanes);
+            if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
+        });
     }
 
     /// The three certificates on [0, cutoff] and one leaf more, with bounds under which the certified search
@@ -136,56 +165,6 @@ private:
         drop_front(queue, done);
     }
 
-    /// Area certificate; then the pieces in which the cubic changes sign, of which the first is pursued at once.
-    void find_roots(bool all)
-    {
-        drain(scratch.screened, all, [&](PairRecord<L>& record, unsigned lanes) FASTCCD_INLINE_LAMBDA {
-            const auto apart = visit_edge_functions<kind>(
-                record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                    return quadratic_certificate<kind>(p, q, t, s, record.scale, whole);
-                });
-            lanes &= ~Lane<L>::bits(apart);
-            if (lanes != 0) find_roots(record, lanes);
-        });
-    }
-
-    FASTCCD_INLINE void find_roots(PairRecord<L>& record, unsigned lanes)
-    {
-        const MonotonePieces<L> pieces =
-            monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds, parameters.leaf_width);
-        record.f = pieces.f;
-        record.threshold = pieces.threshold;
-        const unsigned certain =
-            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), record.scale.volume));
-        if (certain != lanes) leave_undecided(record.pair, lanes & ~certain);
-
-        const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
-        const LaneMask<L> in_second = opposite_signs(pieces.value[1], pieces.value[2]);
-        const LaneMask<L> in_third = opposite_signs(pieces.value[2], pieces.value[3]);
-        const auto set_piece = [&](L low, L high) FASTCCD_INLINE_LAMBDA {
-            record.low = low;
-            record.high = high;
-            record.guess = (low + high) * broadcast<L>(0.5);
-        };
-        // A second root lies in the second piece (after one in the first) or in the third; a third one is rare.
-        const LaneMask<L> first_two = in_first & in_second;
-        if (const unsigned again = certain & Lane<L>::bits(first_two | (in_third & (in_first | in_second))); again != 0) {
-            set_piece(select<L>(first_two, pieces.time[1], pieces.time[2]),
-                      select<L>(first_two, pieces.time[2], pieces.time[3]));
-            push(scratch.later_pieces, again, record);
-        }
-        if (const unsigned again = certain & Lane<L>::bits(first_two & in_third); again != 0) {
-            set_piece(pieces.time[2], pieces.time[3]);
-            push(scratch.later_pieces, again, record);
-        }
-        if (const unsigned found = certain & Lane<L>::bits(in_first | in_second | in_third); found != 0) {
-            set_piece(select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2])),
-                      select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3])));
-            reject_coarsely(record, found);
-        }
-        if (scratch.later_pieces.size >= RootQueue::drain_at) reject_later_pieces(false);
-    }
-
     /// The sides of a bracket of half width delta around the guess, within the piece, when f certainly
     /// changes sign between them: then the piece's only root lies inside.
     struct RootBracket {
@@ -201,17 +180,95 @@ private:
         return {low, high, beyond & opposite_signs(at_low, at_high)};
     }
 
-    void reject_later_pieces(bool all)
+    /// The pieces in which the cubic changes sign, and two steps towards the root of each. Every step is done for all batches
+    /// before the next one, so that divisions and roots of many batches are under way at once.
+    void find_roots(bool all)
     {
-        drain(scratch.later_pieces, all, [&](PairRecord<L>& root, unsigned lanes) FASTCCD_INLINE_LAMBDA {
-            reject_coarsely(root, lanes);
-        });
+        const unsigned size = scratch.candidates.size, end = all ? size : size / width * width;
+        for (unsigned i = 0; i < end; i += width) find_pieces(i, all_lanes(size - i));
+        for (unsigned piece = 0; piece < 3; ++piece) {
+            unsigned any = 0;
+            for (unsigned i = 0; i < end; i += width) {
+                if (scratch.search.pieces[piece][i / width] == 0) continue;
+                any = 1;
+                if (piece > 0) next_piece(i);
+                start_in_middle(i);
+            }
+            if (any == 0) break;
+            for (int step = 0; step < coarse_steps; ++step)
+                for (unsigned i = 0; i < end; i += width)
+                    if (scratch.search.pieces[piece][i / width] != 0) approach_root(i);
+            for (unsigned i = 0; i < end; i += width)
+                if (const unsigned lanes = scratch.search.pieces[piece][i / width]; lanes != 0) reject_coarsely(i, lanes);
+        }
+        drop_front(scratch.candidates, end);
     }
 
-    /// Two steps towards the root; dismisses lanes without inclusion anywhere near it.
-    FASTCCD_INLINE void reject_coarsely(PairRecord<L>& root, unsigned lanes)
+    FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
     {
-        root.guess = clipped_steps<L>(root.f, {root.low, root.high}, root.guess, coarse_steps);
+        prefetcher.lines(width);
+        RootSearch& search = scratch.search;
+        PairRecord<L> record;
+        read(scratch.candidates, i, record);
+        const MonotonePieces<L> pieces =
+            monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds, parameters.leaf_width);
+        const unsigned certain =
+            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), record.scale.volume));
+        if (certain != lanes) leave_undecided(record.pair, lanes & ~certain);
+
+        const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
+        const LaneMask<L> in_second = opposite_signs(pieces.value[1], pieces.value[2]);
+        const LaneMask<L> in_third = opposite_signs(pieces.value[2], pieces.value[3]);
+        // A second root lies in the second piece (after one in the first) or in the third.
+        const LaneMask<L> first_two = in_first & in_second;
+        search.pieces[0][i / width] = certain & Lane<L>::bits(in_first | in_second | in_third);
+        search.pieces[1][i / width] = certain & Lane<L>::bits(first_two | (in_third & (in_first | in_second)));
+        search.pieces[2][i / width] = certain & Lane<L>::bits(first_two & in_third);
+
+        store(search.f, i, pieces.f);
+        Lane<L>::store(&search.threshold[i], pieces.threshold);
+        Lane<L>::store(&search.low[i], select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2])));
+        Lane<L>::store(&search.high[i], select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3])));
+        Lane<L>::store(&search.later_low[i], select<L>(first_two, pieces.time[1], pieces.time[2]));
+        Lane<L>::store(&search.later_high[i], select<L>(first_two, pieces.time[2], pieces.time[3]));
+    }
+
+    FASTCCD_INLINE void next_piece(unsigned i)
+    {
+        RootSearch& search = scratch.search;
+        const L later_high = Lane<L>::load(&search.later_high[i]);
+        Lane<L>::store(&search.low[i], Lane<L>::load(&search.later_low[i]));
+        Lane<L>::store(&search.high[i], later_high);
+        Lane<L>::store(&search.later_low[i], later_high);
+        Lane<L>::store(&search.later_high[i], broadcast<L>(1.0));
+    }
+
+    FASTCCD_INLINE void start_in_middle(unsigned i)
+    {
+        RootSearch& search = scratch.search;
+        const L sum = Lane<L>::load(&search.low[i]) + Lane<L>::load(&search.high[i]);
+        Lane<L>::store(&search.guess[i], sum * broadcast<L>(0.5));
+    }
+
+    FASTCCD_INLINE void approach_root(unsigned i)
+    {
+        prefetcher.lines((width + 1) / 2);
+        RootSearch& search = scratch.search;
+        const Bracket<L> piece{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
+        Lane<L>::store(&search.guess[i], clipped_step(load_cubic<L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
+    }
+
+    /// Dismisses lanes without inclusion anywhere near the root.
+    FASTCCD_INLINE void reject_coarsely(unsigned i, unsigned lanes)
+    {
+        prefetcher.lines(width);
+        PairRecord<L> root;
+        read(scratch.candidates, i, root);
+        root.f = load_cubic<L>(scratch.search.f, i);
+        root.threshold = Lane<L>::load(&scratch.search.threshold[i]);
+        root.low = Lane<L>::load(&scratch.search.low[i]);
+        root.high = Lane<L>::load(&scratch.search.high[i]);
+        root.guess = Lane<L>::load(&scratch.search.guess[i]);
         const L delta = broadcast<L>(coarse_bracket);
         const RootBracket bracket = bracket_root(root, delta);
         // One leaf more on either side: the margin of the certified search.
@@ -223,18 +280,48 @@ private:
         if (scratch.survivors.size >= RootQueue::drain_at) refine(false);
     }
 
+    /// The rest of the way to the root, again one step of all batches after the other; then decides.
     void refine(bool all)
     {
-        drain(scratch.survivors, all, [&](PairRecord<L>& root, unsigned lanes) FASTCCD_INLINE_LAMBDA {
-            const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
-            root.guess = bracketed_steps<L>(root.f, rising, {root.low, root.high}, root.guess, fine_steps);
-            decide(root, lanes);
-        });
+        const unsigned size = scratch.survivors.size, end = all ? size : size / width * width;
+        for (unsigned i = 0; i < end; i += width) prepare_refinement(i);
+        for (int step = 0; step < fine_steps; ++step)
+            for (unsigned i = 0; i < end; i += width) refine_root(i);
+        for (unsigned i = 0; i < end; i += width) decide(i, all_lanes(size - i));
+        drop_front(scratch.survivors, end);
+    }
+
+    FASTCCD_INLINE void prepare_refinement(unsigned i)
+    {
+        Refinement& refinement = scratch.refinement;
+        PairRecord<L> root;
+        read(scratch.survivors, i, root);
+        root.f = power_basis(bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1))));
+        store(refinement.f, i, root.f);
+        Lane<L>::store(&refinement.slope[i], evaluate(root.f, root.high) - evaluate(root.f, root.low));
+        Lane<L>::store(&refinement.low[i], root.low);
+        Lane<L>::store(&refinement.high[i], root.high);
+        Lane<L>::store(&refinement.guess[i], root.guess);
+    }
+
+    FASTCCD_INLINE void refine_root(unsigned i)
+    {
+        Refinement& refinement = scratch.refinement;
+        Bracket<L> bracket{Lane<L>::load(&refinement.low[i]), Lane<L>::load(&refinement.high[i])};
+        const LaneMask<L> rising = less(broadcast<L>(0.0), Lane<L>::load(&refinement.slope[i]));
+        const L guess = bracketed_step(load_cubic<L>(refinement.f, i), rising, bracket, Lane<L>::load(&refinement.guess[i]));
+        Lane<L>::store(&refinement.low[i], bracket.low);
+        Lane<L>::store(&refinement.high[i], bracket.high);
+        Lane<L>::store(&refinement.guess[i], guess);
     }
 
     /// The leaf that holds the refined root, proofs on both sides of it, and inclusion within it.
-    FASTCCD_INLINE void decide(const PairRecord<L>& root, unsigned lanes)
+    FASTCCD_INLINE void decide(unsigned i, unsigned lanes)
     {
+        PairRecord<L> root;
+        read(scratch.survivors, i, root);
+        root.guess = Lane<L>::load(&scratch.refinement.guess[i]);
+        const Cubic<L> f = compute_again(root, parameters);
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
         const L w = broadcast<L>(parameters.leaf_width);
         const RootBracket bracket = bracket_root(root, broadcast<L>(fine_bracket));
@@ -251,8 +338,6 @@ private:
         // f has one strict sign from the bracket's low side (and a leaf before it) to the leaf, the other
         // from the leaf to the bracket's high side (and a leaf after it).
         const L before = max(min(bracket.low, left) - w, zero), after = min(max(bracket.high, right) + w, one);
-        const QuadraticVector<L> p = cross_product(root.r, 0, 1);
-        const Cubic<L> f = bernstein(coplanarity_cubic(root.r, p));
         const Cubic<L> f_before = on_interval(f, before, left), f_after = on_interval(f, right, after);
         const L bound = broadcast<L>(parameters.bounds.cubic_on_interval_lanes()) * root.scale.volume;
         const LaneMask<L> crosses =

@@ -18,7 +18,7 @@ struct PairRecord {
     CoplanarityCubic<L> cubic;
     // From the search for roots on, for one monotone piece in which the cubic changes sign:
     PowerCubic<L> f;
-    L threshold;  ///< See MonotonePieces.
+    L threshold;  ///< See sign_threshold.
     L low, high;  ///< The piece.
     L guess;      ///< Where the next stage starts.
 };
@@ -31,7 +31,6 @@ FASTCCD_INLINE void for_each_common_field(Record& record, Visit& visit)
     const auto vector = [&](auto& v) FASTCCD_INLINE_LAMBDA { visit(v.x), visit(v.y), visit(v.z); };
     vector(record.r.start[0]), vector(record.r.start[1]), vector(record.r.start[2]);
     vector(record.r.end[0]), vector(record.r.end[1]), vector(record.r.end[2]);
-    visit(record.scale.yz), visit(record.scale.zx), visit(record.scale.xy), visit(record.scale.volume);
     visit(record.pair);
 }
 
@@ -39,16 +38,27 @@ template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const PairQueue&, Record& record, Visit visit)
 {
     for_each_common_field(record, visit);
+    visit(record.scale.yz), visit(record.scale.zx), visit(record.scale.xy), visit(record.scale.volume);
     visit(record.cubic.start), visit(record.cubic.thrice_second), visit(record.cubic.thrice_third), visit(record.cubic.end);
 }
 
+/// Scale and cubic are computed again: few roots get here, but a batch that leaves one pays for every field.
 template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const RootQueue&, Record& record, Visit visit)
 {
     for_each_common_field(record, visit);
-    visit(record.f.c0), visit(record.f.c1), visit(record.f.c2), visit(record.f.c3);
-    visit(record.threshold);
     visit(record.low), visit(record.high), visit(record.guess);
+}
+
+/// What RootQueue leaves out. Returns the cubic.
+template <class L>
+FASTCCD_INLINE Cubic<L> compute_again(PairRecord<L>& root, const SearchParameters& parameters)
+{
+    const Cubic<L> f = bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1)));
+    root.f = power_basis(f);
+    root.scale = scales(extents(root.r));
+    root.threshold = sign_threshold(f, root.scale.volume, parameters.bounds, parameters.leaf_width);
+    return f;
 }
 
 /// Appends the lanes of `record` whose bit is set.
@@ -72,6 +82,21 @@ FASTCCD_INLINE void read(const Queue& queue, unsigned first, PairRecord<L>& reco
     for_each_field(queue, record, [&](L& field) FASTCCD_INLINE_LAMBDA {
         field = Lane<L>::load(begin + Queue::capacity * row++);
     });
+}
+
+template <std::size_t size, class L>
+FASTCCD_INLINE void store(double (&rows)[4][size], unsigned i, const PowerCubic<L>& f)
+{
+    Lane<L>::store(&rows[0][i], f.c0);
+    Lane<L>::store(&rows[1][i], f.c1);
+    Lane<L>::store(&rows[2][i], f.c2);
+    Lane<L>::store(&rows[3][i], f.c3);
+}
+
+template <class L, std::size_t size>
+FASTCCD_INLINE PowerCubic<L> load_cubic(const double (&rows)[4][size], unsigned i)
+{
+    return {Lane<L>::load(&rows[0][i]), Lane<L>::load(&rows[1][i]), Lane<L>::load(&rows[2][i]), Lane<L>::load(&rows[3][i])};
 }
 
 /// Moves what lies from `first` on to the front.
