@@ -109,7 +109,7 @@ template <class Batch>
 FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pairs], double* block)
 {
     for (unsigned lane = 0; lane < block_pairs; lane += Lane<Batch>::transposed_records)
-        for (int point = 0; point < 4; ++point)
+        for (std::size_t point = 0; point < 4; ++point)
             Lane<Batch>::transpose_records(&records[point][lane], block + 3 * point * block_pairs + lane,
                                            block + (12 + 3 * point) * block_pairs + lane, block_pairs);
 }

@@ -66,6 +66,19 @@ inline std::string read_text(const std::string& path)
     return {std::istreambuf_iterator<char>{in}, {}};
 }
 
+/// True where memory is not what users see.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool sanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+inline constexpr bool sanitized = true;
+#else
+inline constexpr bool sanitized = false;
+#endif
+#else
+inline constexpr bool sanitized = false;
+#endif
+
 /// How a run of the command ended. A signal n gives status 1000 + n.
 struct Outcome {
     int status = 0;

@@ -1,6 +1,16 @@
 #!/usr/bin/env bash
-# Sets everything up, builds with warnings as errors, runs all tests. Arguments go to ctest.
+# Sets everything up, builds with warnings as errors, runs all tests.
+#
+#   tools/test.sh [ARGUMENT...]   arguments go to ctest
+#   tools/test.sh --all           and then: sanitizers, short fuzzing, an emulated x86-64 without AVX, an emulated arm64
 source "$(dirname "$0")/setup.sh"
+
+all=false
+if [ "${1:-}" = --all ]; then
+  all=true
+  shift
+fi
+
 install_packages "${library_packages[@]}" "${tool_packages[@]}" "${test_packages[@]}" "${bench_packages[@]}"
 configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=ON -DFASTCCD_WERROR=ON
 
@@ -8,3 +18,9 @@ data=${FASTCCD_DATA:-$root/../shared/data}
 [ -d "$data" ] || printf '\n!! No data folder at %s: the tests on public data SKIP. Set FASTCCD_DATA.\n' "$data"
 say "testing"
 ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" "$@"
+$all || exit 0
+
+source "$root/tools/test_all.sh"
+test_sanitized_and_fuzz
+test_other_machines
+say "all passed"

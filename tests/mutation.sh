@@ -1,0 +1,161 @@
+#!/usr/bin/env bash
+# Does a test fail when a proof is weakened? For each mutant below, in a copy of the tree: sets a rounding error bound to
+# zero, or loosens a comparison, builds, and runs the tests named until one fails. Prints mutant -> killed by. Exit 1 if
+# a mutant survives. Takes the better part of an hour on one core.
+#
+#   tests/mutation.sh [PATTERN]      only mutants whose name matches the extended regular expression
+set -euo pipefail
+
+source=$(cd "$(dirname "$0")/.." && pwd)
+pattern=${1:-.}
+work=$(mktemp -d "${TMPDIR:-/tmp}/mutants.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+tree=$work/tree build=$work/build
+mkdir "$tree"
+cp -r "$source"/{CMakeLists.txt,kernels,scalar,simd,scheduler,tests} "$tree"
+export FASTCCD_DATA=${FASTCCD_DATA:-$source/../shared/data}
+
+# The mathematics is one text for all instruction sets: the scalar lanes alone build four times as fast.
+sed -i 's/if(CMAKE_SYSTEM_PROCESSOR MATCHES .*/if(FALSE)/; s/elseif(CMAKE_SYSTEM_PROCESSOR MATCHES .*/elseif(FALSE)/' "$tree/simd/isa_libraries.cmake"
+sed -i 's/PRIVATE -O3 /PRIVATE -O1 /' "$tree/simd/isa_libraries.cmake"
+cmake -S "$tree" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
+  -DFASTCCD_TOOLS=OFF -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=OFF > "$work/cmake.log"
+
+# True if the test passes. One that cannot be built, or that somebody stopped, says nothing.
+passes() {
+  local target=$1 status=0
+  [ "$1" = stress ] && target=fastccd_stress
+  if ! ninja -C "$build" -j "${JOBS:-1}" "$target" > "$work/build.log" 2>&1; then
+    tail -n 20 "$work/build.log"
+    echo "mutation.sh: $target does not build" >&2
+    exit 2
+  fi
+  case $1 in
+    stress) "$build/tests/fastccd_stress" --minutes 0.5 --seed 7 ;;
+    *) "$build/tests/$1" --gtest_fail_fast ;;
+  esac > "$work/test.log" 2>&1 || status=$?
+  if [ $status -eq 130 ] || [ $status -eq 137 ] || [ $status -eq 143 ]; then
+    echo "mutation.sh: $1 was stopped from outside" >&2
+    exit 2
+  fi
+  return $status
+}
+
+survivors=0 mutants=0 dry=true
+# mutant NAME FILE PERL_SUBSTITUTION TEST...
+mutant() {
+  local name=$1 file=$tree/$2 change=$3 killer=
+  shift 3
+  [[ $name =~ $pattern ]] || return 0
+  mutants=$((mutants + 1))
+  cp -p "$file" "$work/original"
+  perl -0pi -e "$change" "$file"
+  if cmp -s "$file" "$work/original"; then
+    echo "mutation.sh: $name: nothing in ${file#"$tree"/} matches; the mutant is out of date" >&2
+    exit 2
+  fi
+  if $dry; then
+    cp -p "$work/original" "$file"
+    return 0
+  fi
+  for test in "$@"; do
+    if ! passes "$test"; then
+      killer=$test
+      break
+    fi
+  done
+  cp "$work/original" "$file"  # with a new time, so that it is compiled again
+  if [ -n "$killer" ]; then
+    printf '%-44s killed by %s\n' "$name" "$killer"
+  else
+    survivors=$((survivors + 1))
+    printf '%-44s SURVIVES %s\n' "$name" "$*"
+  fi
+}
+
+all_mutants() {
+bounds=kernels/error_bound.hpp
+# ---- Bounds set to zero
+for name in quadratic quadratic_sum cubic linear cubic_on_interval quadratic_on_interval linear_on_interval \
+            edge_function edge_function_sum area monotone_piece; do
+  mutant "$name = 0" $bounds "s/(double $name\\(\\)(?: const)?\\s*\\{)\\s*return /\$1 return 0 * /" error_bounds_test
+done
+mutant 'quadratic_bound = 0' scalar/magnitudes.hpp 's/\* ErrorBounds::u \* m;(?=\s*return min\(bound \+ underflow_share \* from_extents, from_extents\);\s*\}\s*\/\/\/ Bound of the Bernstein)/* 0 * m;/' error_bounds_test
+mutant 'cubic_bound = 0' scalar/magnitudes.hpp 's/(\(3 \* bounds\.rho \+ 18 \+ ErrorBounds::slack\)) \* ErrorBounds::u/$1 * 0/' error_bounds_test
+mutant 'underflow_share = 0' scalar/magnitudes.hpp 's/underflow_share = 0x1p-40/underflow_share = 0/' error_bounds_test
+mutant 'volume_floor = 0' $bounds 's/volume_floor = 0x1p-800/volume_floor = 0/' error_bounds_test
+mutant 'area_floor = 0' $bounds 's/area_floor = 0x1p-900/area_floor = 0/' error_bounds_test
+mutant 'smallest_volume = 0' $bounds 's/smallest_volume = 0x1p-300/smallest_volume = 0/' same_bits_test certificates_test truth_test stress
+mutant 'largest_extent without limit' $bounds 's/largest_extent = 0x1p130/largest_extent = 0x1p340/' certificates_test same_bits_test truth_test stress
+mutant 'rho of shorter steps = 1' $bounds 's/t_max == 1\.0 \? 1\.0 : 10\.0/1.0/' error_bounds_test
+mutant 'hull_deviation = 0' $bounds 's/hull_deviation = 4\.0/hull_deviation = 0/' error_bounds_test
+
+# ---- Margins of the lanes dropped
+mutant 'no margin on intervals' $bounds 's/cubic_on_interval\(\) \+ \(2 \* cubic_blossom_levels \+ slack\) \* u/cubic_on_interval()/' error_bounds_test
+mutant 'no margin of edge functions' $bounds 's/4 \* rho \+ 16 \+ 2 \* \(4 \* rho \+ 18 \+ slack\)/4 * rho + 16/' error_bounds_test
+mutant 'no margin of sums of edge functions' $bounds 's/12 \* rho \+ 58 \+ 8 \* \(4 \* rho \+ 18 \+ slack\)/12 * rho + 58/' error_bounds_test
+mutant 'no margin of the early cubic' $bounds 's/ \+ 3 \* 2 \* cubic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of early edge functions' $bounds 's/ \+ 2 \* 2 \* quadratic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of early sums' $bounds 's/ \+ 2 \* 2 \* 4 \* quadratic_on_interval\(\)//' error_bounds_test
+mutant 'change of edge functions = 0' kernels/projected_inclusion.hpp 's/broadcast<L>\(8\.0\) \* \(delta/broadcast<L>(0.0) * (delta/' certificates_test same_bits_test truth_test
+
+# ---- Certificates of the whole interval loosened
+certificates=kernels/certificates.hpp
+mutant 'cubic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.cubic\) \* volume/broadcast<L>(0.0) * volume/' certificates_test truth_test
+mutant 'quadratic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test
+mutant 'sum of edge functions by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test stress
+mutant 'linear certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.linear\) \* extent/broadcast<L>(0.0) * extent/' certificates_test truth_test stress
+mutant 'linear certificate at one end' $certificates 's/less\(bound, min\(s\.above, e\.above\)\)/less(bound, max(s.above, e.above))/' certificates_test
+mutant 'touching counts as apart' $certificates 's/less\(bound, min\(s\.above, e\.above\)\)/(!less(min(s.above, e.above), bound))/' certificates_test
+mutant 'outside one side is outside (vertex-face)' $certificates 's/(max\(p\.smallest, q\.smallest, t\.smallest\)\)) &/$1 |/' certificates_test
+mutant 'one end point on one side (edge-edge)' $certificates 's/min\(p\.smallest, t\.smallest\)/max(p.smallest, t.smallest)/' certificates_test
+
+# ---- The certified search loosened
+search=scalar/pair_polynomials.hpp
+mutant 'search: cubic by sign alone' $search 's/smallest\(f\) > cubic_bound\(\) \|\| largest\(f\) < -cubic_bound\(\)/smallest(f) > 0 || largest(f) < 0/' certificates_test
+mutant 'search: edge functions by sign alone' $search 's/smallest\(c\) > e\.bound \? 1 : largest\(c\) < -e\.bound/smallest(c) > 0 ? 1 : largest(c) < 0/' certificates_test
+mutant 'search: axis gaps by sign alone' $search 's/bounds\.linear_on_interval\(\) \* extent/0.0 * extent/' certificates_test truth_test stress
+mutant 'search: inclusion at no area' $search 's/p != 0 && p == q && q == t/p == q && q == t/' truth_test nothing_invented_test same_bits_test stress
+mutant 'search: proof by sign alone' scalar/leaf_search.hpp 's/f\.c0 > bound && f\.c3 < -bound\) \|\| \(f\.c0 < -bound && f\.c3 > bound/f.c0 > 0 && f.c3 < 0) || (f.c0 < 0 && f.c3 > 0/' certificates_test truth_test nothing_invented_test same_bits_test stress
+mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/leaf\.a > 0\.0 && contact_proven/contact_proven/' never_zero_test
+mutant 'search: coarse next to time 0' scalar/leaf_search.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
+mutant 'search: near misses not halved' scalar/leaf_search.hpp 's/pair\.apart\(i\) \|\| pair\.apart_by_area\(i\)/false/' truth_test nothing_invented_test
+mutant 'search: no area certificate' $search 's/return area_certificate<kind>\(r, scale, i\.a \+ half, half, bounds\)\.value/return half < 0/' nothing_invented_test same_bits_test
+mutant 'time not rounded down' kernels/search_parameters.hpp 's/\(s \* t_max\) \* \(1\.0 - 0x1p-52\)/s * t_max/' error_bounds_test
+mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
+mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = 0x1p100/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
+
+# ---- Area inclusion loosened
+# Not among them, because nothing observable changes: the term delta^2 C2^2 / 2: C1 bounds the edges at every time of the
+# interval, so delta C1 C2 alone bounds the change.
+area=kernels/area_inclusion.hpp
+mutant 'area: no rounding' $area 's/less\(change \+ rounding, excess\)/less(change, excess)/' error_bounds_test certificates_test
+mutant 'area: no change' $area 's/less\(change \+ rounding, excess\)/less(rounding, excess)/' error_bounds_test certificates_test
+mutant 'area: edges at the start only' $area 's/max\(largest_square\(r\.start\[0\], r\.start\[1\], r\.start\[2\]\),\s*largest_square\(r\.end\[0\], r\.end\[1\], r\.end\[2\]\)\)/largest_square(r.start[0], r.start[1], r.start[2])/' error_bounds_test certificates_test
+
+# ---- Decisions of the lanes loosened
+# Not among them, because others imply it: that the values at the ends of a bracket are beyond the threshold. On the coarse
+# bracket a cubic that changes sign is beyond it; on the fine one `crosses` asks for strict signs up to the same ends.
+pipeline=simd/pipeline.hpp
+mutant 'lanes: uncertain pieces decided' $pipeline 's/bits\(pieces\.certain & less/bits(less/' certificates_test same_bits_test
+mutant 'lanes: pieces by sign alone' kernels/sign_change.hpp 's/less\(pieces\.threshold, closest\)/less(zero, closest)/' certificates_test same_bits_test stress
+mutant 'lanes: bracket not certain' $pipeline 's/beyond & opposite_signs\(at_low, at_high\)/beyond/' certificates_test same_bits_test
+mutant 'lanes: dismissed without a bracket' $pipeline 's/bracket\.certain & inclusion\.absent/inclusion.absent/' certificates_test same_bits_test
+mutant 'lanes: first leaf decided' $pipeline 's/inner & bracket\.certain/bracket.certain/' never_zero_test same_bits_test
+mutant 'lanes: crossing not asked for' $pipeline 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
+mutant 'lanes: crossing by sign alone' $pipeline 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
+mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, min\(pk, qk, tk\)\) \| less\(max\(pk, qk, tk\), zero - bound\)/less(zero, min(pk, qk, tk)) | less(max(pk, qk, tk), zero)/' certificates_test same_bits_test
+mutant 'lanes: early cutoff too early' $pipeline 's/cutoff \+ 2 \* parameters\.leaf_width < 1\.0 \? cutoff \+ 2 \* parameters\.leaf_width : 1\.0/0.5 * cutoff/' indexed_test same_bits_test
+}
+
+all_mutants  # that each of them still changes something
+dry=false
+for test in error_bounds_test certificates_test truth_test; do
+  [ "$pattern" = . ] || break
+  passes "$test" || { echo "mutation.sh: $test fails without any mutation" >&2; exit 2; }
+done
+mutants=0
+all_mutants
+echo
+echo "$mutants mutants, $survivors survive"
+[ "$survivors" -eq 0 ]

@@ -1,0 +1,55 @@
+# Sourced by test.sh --all: what needs builds of its own, in folders next to the ordinary one.
+
+# AddressSanitizer and UndefinedBehaviorSanitizer on all tests, and some seconds of fuzzing in the same build. Left out:
+# oracle_test, five minutes of arithmetic in the tests' own code, none of the library's.
+test_sanitized_and_fuzz() {
+  local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized
+  install_packages clang libclang-rt-dev
+  CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
+    -DFASTCCD_FUZZERS=ON -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
+  say "testing with sanitizers"
+  ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)" --exclude-regex '^oracle_test$'
+
+  say "fuzzing, $seconds s each"
+  fuzz npy "$seconds" npy
+  fuzz csv "$seconds" csv
+  fuzz mesh "$seconds" ply obj
+  fuzz pairs "$seconds" pairs
+}
+
+# fuzz NAME SECONDS CORPUS...: on a copy of the corpora; stops at the first input that fails, and keeps it.
+fuzz() {
+  local fuzzer=$build-sanitized/tests/fuzz/${1}_fuzzer work=$build-sanitized/fuzz/$1 log=$build-sanitized/fuzz/$1.log seconds=$2 corpus
+  shift 2
+  rm -rf "$work"
+  mkdir -p "$work"
+  for corpus in "$@"; do cp "$root/tests/fuzz/corpus/$corpus/"* "$work"; done
+  if ! "$fuzzer" "$work" -max_total_time="$seconds" -artifact_prefix="$work-failed-" >"$log" 2>&1; then
+    tail -n 40 "$log" >&2
+    echo "the input that failed is $(ls "$work"-failed-* 2>/dev/null)" >&2
+    return 1
+  fi
+  printf '%s: %s\n' "$(basename "$fuzzer")" "$(grep DONE "$log")"
+}
+
+# The same answers, bit by bit, as on this machine: without AVX (the wide kernels must not even be touched), and from NEON lanes.
+test_other_machines() {
+  local here=$build/digest-here.txt pairs=60 arm64=$build-arm64
+  if [ "$(uname -m)" != x86_64 ]; then
+    say "emulated machines: only from x86-64"
+    return 0
+  fi
+  dpkg --print-foreign-architectures | grep -qx arm64 || as_root dpkg --add-architecture arm64
+  install_packages qemu-user-static g++-aarch64-linux-gnu libtbb-dev:arm64 libxsimd-dev:arm64 libgmp-dev:arm64 libgtest-dev:arm64
+  "$build/tests/fastccd_digest" $pairs >"$here"
+
+  say "emulated x86-64 without AVX"
+  qemu-x86_64-static -cpu Nehalem "$build/tests/fastccd_digest" $pairs | cmp - "$here"
+  qemu-x86_64-static -cpu Nehalem "$build/tests/api_test" --gtest_brief=1
+
+  build=$arm64 configure_and_build "-DCMAKE_TOOLCHAIN_FILE=$root/tools/arm64.cmake" -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON \
+    -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- fastccd_digest api_test
+  say "emulated arm64"
+  qemu-aarch64-static "$arm64/tests/fastccd_digest" $pairs | cmp - "$here"
+  qemu-aarch64-static "$arm64/tests/api_test" --gtest_brief=1
+}
