@@ -34,18 +34,29 @@ def truth_table():
 
 
 def speed_table():
-    """The end-to-end medians of one thread: packed and indexed pairs."""
-    rows = ["| kind | data | layout | million pairs/s | of the streaming limit | contacts |", "|---|---|---|---|---|---|"]
-    for record in sorted(results.glob("*.json")):
-        for b in json.loads(record.read_text())["benchmarks"]:
-            name = b["name"].removesuffix("_median").removesuffix("/manual_time")
-            match = re.fullmatch(r"(vertex_face|edge_edge)/avx2/([^/]+)/(blocked|indexed)/double/threads:1", name)
-            if not match or b.get("aggregate_name", "median") != "median":
-                continue
-            limit = f"{100 * b['limit_fraction']:.0f} %" if "limit_fraction" in b else "-"
-            kind = match[1].replace("_", "-")
-            rows.append(f"| {kind} | {match[2]} | {match[3]} | {b['pairs/s'] / 1e6:.1f} | {limit} | {int(b['contacts']):,} |")
-    return "\n".join(rows)
+    """The end-to-end medians of one thread in the latest record: packed and indexed pairs, per instruction set."""
+    records = [json.loads(path.read_text()) for path in results.glob("*.json")]
+    record = max(records, key=lambda r: r["context"]["date"])
+    rates, last, contacts = {}, {}, {}
+    for b in record["benchmarks"]:
+        name = b["name"].removesuffix("_median").removesuffix("/manual_time")
+        match = re.fullmatch(r"(vertex_face|edge_edge)/(avx2|avx512|neon)/([^/]+)/(blocked|indexed)/double/threads:1", name)
+        if not match or b.get("aggregate_name", "median") != "median":
+            continue
+        key = (match[1].replace("_", "-"), match[3], match[4])
+        rates.setdefault(key, {})[match[2]] = b["pairs/s"] / 1e6
+        last[key] = f"{100 * b['limit_fraction']:.0f} %" if "limit_fraction" in b else "-"
+        contacts[key] = int(b["contacts"])
+    isas = [isa for isa in ("avx2", "avx512", "neon") if any(isa in rate for rate in rates.values())]
+    context = record["context"]
+    lines = [f"One thread, E_tol 1e-9, million pairs per second; {context['cpu']}, {context['num_cpus']} processors, "
+             f"commit {context['commit']}. Last column but one: the share of the streaming limit that {isas[-1]} reaches.", "",
+             "| kind | data | layout | " + " | ".join(isas) + " | of the limit | contacts |",
+             "|---|---|---|" + "---|" * len(isas) + "---|---|"]
+    for key, rate in rates.items():
+        cells = [f"{rate[isa]:.1f}" if isa in rate else "-" for isa in isas]
+        lines.append("| " + " | ".join([*key, *cells, last[key], f"{contacts[key]:,}"]) + " |")
+    return "\n".join(lines)
 
 
 text = readme.read_text()
