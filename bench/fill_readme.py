@@ -3,6 +3,7 @@
 
 run:   results/run.txt, what tools/run.sh printed
 truth: results/truth.txt, what truth_test printed
+sets:  the same, a row per set, with and without the exact verdict
 speed: results/*.json, records of tools/bench.sh
 """
 import json
@@ -33,6 +34,21 @@ def truth_table():
     return "\n".join(rows)
 
 
+def set_table():
+    """Lines of truth_test: set NAME: kind, N pairs, C contacts, ... false alarms A and B exactly, worst early S and T."""
+    rows = ["| set | contacts | missed | late | proven | false alarms | with `--exact` | worst early | with `--exact` |",
+            "|---|---|---|---|---|---|---|---|---|"]
+    for line in (results / "truth.txt").read_text().splitlines():
+        if match := re.match(r"set (\S+): \S+ \d+ pairs, (\d+) contacts, (\d+) missed, (\d+) late, (\d+) proven, "
+                             r"false alarms (\d+) and (\d+) exactly, worst early (\S+)(?: and (\S+))?", line):
+            name, contacts, missed, late, proven, alarms, exact_alarms, early, exact_early = match.groups()
+            name = name.removesuffix(".csv")
+            early = "-" if early == "unknown" else early
+            rows.append("| " + " | ".join([name, *(f"{int(v):,}" for v in (contacts, missed, late, proven, alarms, exact_alarms)),
+                                           early, exact_early or "-"]) + " |")
+    return "\n".join(rows)
+
+
 def speed_table():
     """The end-to-end medians of one thread in the latest record: packed and indexed pairs, per instruction set."""
     records = [json.loads(path.read_text()) for path in results.glob("*.json")]
@@ -60,7 +76,7 @@ def speed_table():
 
 
 text = readme.read_text()
-for mark, content in (("run.sh", run_output()), ("truth", truth_table()), ("speed", speed_table())):
+for mark, content in (("run.sh", run_output()), ("truth", truth_table()), ("sets", set_table()), ("speed", speed_table())):
     begin, end = f"<!-- {mark} begin -->", f"<!-- {mark} end -->"
     head, rest = text.split(begin)
     text = head + begin + "\n" + content + "\n" + end + rest.split(end)[1]

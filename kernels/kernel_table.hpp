@@ -63,6 +63,7 @@ struct TileScratch {
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
+    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. What lanes report is proven.
     PairQueue screened;      ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without an area certificate either.
     RootSearch search;

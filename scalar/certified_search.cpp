@@ -27,7 +27,7 @@ template <PairKind kind>
 SearchResult search(const double* coordinates, const SearchParameters& parameters)
 {
     const PairPolynomials<kind> pair{coordinates, parameters};
-    SearchResult result{std::numeric_limits<double>::infinity(), 0, 1};
+    SearchResult result{std::numeric_limits<double>::infinity(), Proof::none, 0, 1};
     if (pair.apart()) return result;
 
     LeafSearch<kind> leaves{pair, parameters};
@@ -35,6 +35,7 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
     result.intervals = leaves.intervals();
     if (first > 1.0) return result;
     result.toi = parameters.time(first);
+    result.proof = leaves.proof_of_contact(first);
     if (parameters.count_roots) result.roots = count_contact_roots(pair, parameters);
     return result;
 }
@@ -43,7 +44,7 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
 SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters)
 {
-    if (!finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+    if (!finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
     return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters)
                                          : search<PairKind::edge_edge>(coordinates, parameters);
 }

@@ -12,8 +12,16 @@ namespace fastccd::scalar {
 /// once, and the first without a certificate is the answer: contact, with the lower bound reached. Far above what any pair of the public data needs.
 inline constexpr unsigned most_intervals = 4096;
 
+/// What is certain about a contact that is reported.
+enum class Proof : std::uint8_t {
+    none,    ///< Contact is not excluded, to within rounding.
+    nearby,  ///< There is contact in a wider interval around toi than a leaf.
+    leaf,    ///< There is contact in the leaf that begins at toi.
+};
+
 struct SearchResult {
     double toi;          ///< In [0, t_max]; +infinity: certainly apart; NaN: invalid coordinates.
+    Proof proof;         ///< If there is contact.
     std::uint8_t roots;  ///< Contact roots, if asked for; 0 if there is no contact or they cannot be counted.
     unsigned intervals;  ///< Examined on the way, for benchmarks and tests.
 };

@@ -49,12 +49,14 @@ public:
             // Out of intervals: what is still waiting is looked at once more, but not halved.
             const bool out_of_intervals = intervals_++ >= most_intervals;
             if (i.b - i.a < 1.0 && pair.apart(i)) continue;  // the whole interval has no certificate
-            if (out_of_intervals) return i.a;
-            if (i.b - i.a > parameters.leaf_width) {
+            if (!out_of_intervals && i.b - i.a > parameters.leaf_width) {
                 stack.push_halves(i);
-            } else if (const double contact = contact_in_leaf(i); contact != none) {
-                return contact;
+                continue;
             }
+            const double contact = out_of_intervals ? i.a : contact_in_leaf(i);
+            if (contact == none) continue;
+            leaf_of_answer = i;
+            return contact;
         }
         return none;
     }
@@ -79,6 +81,16 @@ public:
         return none;
     }
 
+    /// After first_contact() has found something at s: whether there is contact for certain, in the leaf of the answer or
+    /// in some interval around s. A root may lie too close to the leaf's end, and inclusion may end in a wide leaf.
+    [[nodiscard]] Proof proof_of_contact(double s) const
+    {
+        if (contact_proven(leaf_of_answer)) return Proof::leaf;
+        for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8)
+            if (contact_proven({std::max(s - reach, 0.0), std::min(s + reach, 1.0)})) return Proof::nearby;
+        return Proof::none;
+    }
+
     [[nodiscard]] unsigned intervals() const { return intervals_; }
 
 private:
@@ -87,6 +99,9 @@ private:
     /// digits to spare, or, next to time 0, to this absolute one.
     static constexpr double finest_relative = 0x1p-52;
     static constexpr double finest_at_zero = 0x1p-100;
+
+    /// Within less, rounding hides every change of sign; within more, inclusion rarely lasts.
+    static constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
 
     /// The cubic has strict opposite signs at the ends, and inclusion is strict throughout.
     [[nodiscard]] bool contact_proven(Interval leaf) const
@@ -99,6 +114,7 @@ private:
 
     const PairPolynomials<kind>& pair;
     const SearchParameters& parameters;
+    Interval leaf_of_answer{0.0, 1.0};  ///< Where first_contact() found contact.
     unsigned intervals_ = 0;
 };
 

@@ -48,7 +48,7 @@ Status prepare(PairKind kind, const CheckedSource& checked, const Options& optio
     return prepare(kind, checked.source, options, count_roots, job);
 }
 
-Job no_job(PairKind kind) { return {kind, {}, {1.0, 1.0, false}, nullptr}; }
+Job no_job(PairKind kind) { return {kind, {}, {1.0, 1.0, false}, nullptr, false}; }
 
 Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, std::span<double> toi, Summary* summary,
              std::span<std::uint8_t> roots)
@@ -99,7 +99,7 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
                 if (std::isnan(t))
                     worker.invalid.push_back(first + i);
                 else
-                    worker.contacts.push_back({first + i, t});
+                    worker.contacts.push_back({first + i, t, !is_set(worker.scratch.is_unproven, i)});
             });
             share.contacts_end = worker.contacts.size();
             share.invalid_end = worker.invalid.size();
@@ -164,7 +164,7 @@ Status earliest(PairKind kind, const CheckedSource& pairs, const Options& option
         best.offer(worker.totals.earliest);
     });
     contact = best.contact();
-    totals.contacts = 0;
+    totals.contacts = totals.proven = 0;
     totals.earliest = contact;
     if (summary != nullptr) *summary = totals;
     return {};
@@ -232,6 +232,7 @@ const char* message(Error error) noexcept
         case Error::bad_tolerance: return "the tolerance must be a positive finite number";
         case Error::bad_t_max: return "t_max must be greater than 0 and at most 1";
         case Error::wrong_size: return "an array does not have one element per pair or vertex, or has no data";
+        case Error::exact_unavailable: return "this build has no exact verdict: it was built without GMP";
         case Error::isa_unavailable: return "the instruction set is not in this build or not on this machine";
         case Error::bad_isa_environment:
             return "FASTCCD_ISA names an instruction set that is unknown or not available on this machine";

@@ -1,11 +1,13 @@
 #include <tile_runner.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 
 #include <block_source.hpp>
 #include <certified_search.hpp>
+#include <exact_contact.hpp>
 #include <fastccd/isa.hpp>
 
 namespace fastccd {
@@ -45,6 +47,18 @@ void gather_pair(PairKind kind, const IndexedSource& source, std::size_t i, doub
         }
 }
 
+/// Both times are lower bounds of the first contact.
+void settle(const Job& job, const double* coordinates, scalar::SearchResult& found)
+{
+    const scalar::ExactContact exact = scalar::exact_contact(job.kind, coordinates, job.parameters);
+    if (exact.contact) {
+        found.toi = std::max(found.toi, job.parameters.time(exact.leaf_start));
+        found.proof = scalar::Proof::leaf;
+    } else {
+        found = {std::numeric_limits<double>::infinity(), scalar::Proof::none, 0, found.intervals};
+    }
+}
+
 void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& scratch)
 {
     double coordinates[pair_coordinates];
@@ -54,12 +68,14 @@ void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& 
         load_pair<double>(*job.source.view, first + i, coordinates);
     else
         load_pair<float>(*job.source.view, first + i, coordinates);
-    const scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
+    scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
+    if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
     scratch.time[i] = found.toi;
     scratch.roots[i] = found.roots;
     const std::uint64_t bit = std::uint64_t{1} << i % 64;
     std::uint64_t& word = scratch.reported[i / 64];
     word = found.toi == std::numeric_limits<double>::infinity() ? word & ~bit : word | bit;
+    if (std::isfinite(found.toi) && found.proof == scalar::Proof::none) scratch.is_unproven[i / 64] |= bit;
 }
 
 /// Ties go to the smaller index: a worker may see tiles in any order.
@@ -93,15 +109,17 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
     if (!(options.tolerance > 0.0) || std::isinf(options.tolerance)) return {Error::bad_tolerance};
     if (!(options.t_max > 0.0 && options.t_max <= 1.0)) return {Error::bad_t_max};
     if (source.view != nullptr && source.size > 0 && source.view->data() == nullptr) return {Error::wrong_size};
+    if (options.exact && !scalar::exact_contact_available()) return {Error::exact_unavailable};
     const KernelTable* kernels = nullptr;
     if (!options.reference)
         if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
-    job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels};
+    job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels, options.exact};
     return {};
 }
 
 void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch, Summary& totals)
 {
+    for (std::uint64_t& word : scratch.is_unproven) word = 0;
     if (job.kernels != nullptr) {
         job.kernels->run_tile({job.kind, &job.source, first, count, &job.parameters, cutoff}, scratch);
         for_each_bit(scratch.reported, [&](std::size_t i) { scratch.time[i] = job.parameters.time(scratch.time[i]); });
@@ -121,15 +139,18 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
             ++totals.invalid;
             return;
         }
+        const bool proven = !is_set(scratch.is_unproven, i);
         ++totals.contacts;
+        if (proven) ++totals.proven;
         if (job.parameters.count_roots && scratch.roots[i] != 0) ++(scratch.roots[i] % 2 == 1 ? totals.odd : totals.even);
-        keep_earlier(totals.earliest, {first + i, toi});
+        keep_earlier(totals.earliest, {first + i, toi, proven});
     });
 }
 
 void add(Summary& whole, const Summary& part)
 {
     whole.contacts += part.contacts;
+    whole.proven += part.proven;
     whole.odd += part.odd;
     whole.even += part.even;
     whole.invalid += part.invalid;

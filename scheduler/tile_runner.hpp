@@ -16,6 +16,7 @@ struct Job {
     PairSource source;
     SearchParameters parameters;
     const KernelTable* kernels;  ///< Null: the certified search alone.
+    bool exact;                  ///< Settle unproven contacts by rational arithmetic.
 };
 
 /// Checks options and chooses the kernels. On error the job must not be run.
@@ -34,6 +35,9 @@ void for_each_bit(const std::uint64_t (&words)[tile_pairs / 64], Visit visit)
         for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1)
             visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
 }
+
+/// Bit i of a tile's words.
+inline bool is_set(const std::uint64_t (&words)[tile_pairs / 64], std::size_t i) { return (words[i / 64] >> i % 64 & 1) != 0; }
 
 /// Adds the totals of a part to those of the whole.
 void add(Summary& whole, const Summary& part);

@@ -28,6 +28,7 @@ std::uint64_t checksum(const Answer& answer)
     for (const double toi : answer.toi) sum.add(std::bit_cast<std::uint64_t>(toi));
     for (const std::uint8_t roots : answer.roots) sum.add(roots);
     sum.add(answer.summary.contacts);
+    sum.add(answer.summary.proven);
     sum.add(answer.summary.earliest.pair);
     return sum.value();
 }

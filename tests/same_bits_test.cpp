@@ -27,6 +27,7 @@ void expect_same(const Answer& expected, const Answer& found, const std::string&
                                       << expected.toi[i] << ", roots " << int{found.roots[i]} << " instead of "
                                       << int{expected.roots[i]};
     EXPECT_EQ(expected.summary.contacts, found.summary.contacts) << what;
+    EXPECT_EQ(expected.summary.proven, found.summary.proven) << what;
     EXPECT_EQ(expected.summary.odd, found.summary.odd) << what;
     EXPECT_EQ(expected.summary.even, found.summary.even) << what;
     EXPECT_EQ(expected.summary.invalid, found.summary.invalid) << what;

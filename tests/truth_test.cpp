@@ -16,11 +16,13 @@ namespace {
 constexpr double tolerances[] = {1e-6, 1e-9, 1e-12};
 
 struct Count {
-    std::size_t pairs = 0, contacts = 0, missed = 0, late = 0, false_alarms = 0;
+    std::size_t pairs = 0, contacts = 0, missed = 0, late = 0, false_alarms = 0, proven = 0;
+    double worst_early = 0.0;  ///< Largest t_lo - toi of a contact, where its time is known.
     std::string first_fault;
 
     void add(const QuerySet& set, const Answer& found)
     {
+        proven += found.summary.proven;
         for (std::size_t i = 0; i < set.pairs.size(); ++i) {
             const bool reported = found.toi[i] <= 1.0;
             ++pairs;
@@ -31,6 +33,8 @@ struct Count {
                 fault(missed, "missed", set, i);
             } else if (!set.t_hi.empty() && found.toi[i] > set.t_hi[i]) {
                 fault(late, "late", set, i);
+            } else if (!set.t_lo.empty()) {
+                worst_early = std::max(worst_early, set.t_lo[i] - found.toi[i]);
             }
         }
     }
@@ -61,6 +65,29 @@ void expect_nothing_missed_or_late(const std::vector<QuerySet>& sets, double tol
                 by_kind[1].false_alarms);
 }
 
+/// A line per set: counts without and with the exact verdict. README's table is made from it.
+void expect_exact_verdict(const std::vector<QuerySet>& sets)
+{
+    Options exact;
+    exact.exact = true;
+    for (const QuerySet& set : sets) {
+        Count plain, settled;
+        plain.add(set, answer(set.kind, interleaved(set.pairs), {}));
+        settled.add(set, answer(set.kind, interleaved(set.pairs), exact));
+        EXPECT_EQ(settled.missed + settled.late, 0u) << settled.first_fault;
+        EXPECT_EQ(settled.false_alarms, 0u) << set.name;
+        EXPECT_EQ(settled.proven, settled.contacts) << set.name;
+        EXPECT_LE(settled.worst_early, exact.tolerance) << set.name;
+        std::printf("set %s: %s, %zu pairs, %zu contacts, %zu missed, %zu late, %zu proven, false alarms %zu and %zu exactly, worst early ",
+                    set.name.c_str(), kind_name(set.kind), plain.pairs, plain.contacts, plain.missed, plain.late, plain.proven,
+                    plain.false_alarms, settled.false_alarms);
+        if (set.t_lo.empty())
+            std::printf("unknown\n");
+        else
+            std::printf("%.2g and %.2g\n", plain.worst_early, settled.worst_early);
+    }
+}
+
 TEST(Truth, PublicHardCases)
 {
     const auto data = data_directory();
@@ -71,6 +98,7 @@ TEST(Truth, PublicHardCases)
         Count by_kind[2];
         expect_nothing_missed_or_late(sets, tolerance, by_kind);
     }
+    expect_exact_verdict(sets);
 }
 
 TEST(Truth, PublicQueries)
@@ -85,6 +113,7 @@ TEST(Truth, PublicQueries)
         EXPECT_LE(by_kind[0].false_alarms, 15u) << "vertex-face, E_tol " << tolerance;
         EXPECT_LE(by_kind[1].false_alarms, 23u) << "edge-edge, E_tol " << tolerance;
     }
+    expect_exact_verdict(sets);
 }
 
 /// Families in which every pair is far from a near miss: any false alarm is a fault.

@@ -99,6 +99,8 @@ void add_search_options(CLI::App& command, CommonOptions& options)
         ->type_name("NAME");
     command.add_flag("--reference", options.narrow_phase.reference,
                      "Answer every pair by the certified search alone: slower,\nthe same results");
+    command.add_flag("--exact", options.narrow_phase.exact,
+                     "Settle contacts that rounding leaves possible but not proven\nby rational arithmetic: none reported is a false alarm");
 }
 
 void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns)
@@ -109,6 +111,8 @@ void add_report_options(CLI::App& command, CommonOptions& options, const std::st
                                 "- is standard output, and moves the report to standard error",
                                 hits_columns))
         ->type_name("OUT.csv");
+    command.add_flag("--proof", options.proof, "A last column proven in --hits: 1, or 0 for a contact that is\npossible to within rounding")
+        ->needs("--hits");
     command.add_flag("--json", options.json, "Report as one JSON object");
     command.add_flag("--quiet", options.quiet, "No progress bar, and no report unless --json");
 }
@@ -122,8 +126,9 @@ void add_pair_options(CLI::App& command, PairOptions& options)
         ->required()
         ->type_name("vf|ee");
     add_search_options(command, options);
-    command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots");
     add_report_options(command, options, "pair,toi, invalid pairs with nan");
+    command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots")
+        ->excludes("--proof");
 }
 
 void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs)

@@ -22,6 +22,7 @@ struct CommonOptions {
     Options narrow_phase;
     std::uint64_t threads = 0;  ///< At most most_threads; 0: as many as the machine runs at once.
     std::string hits;           ///< Where to write the contacts; empty: nowhere.
+    bool proof = false;         ///< Say of each of them whether it is proven.
     bool json = false;
     bool quiet = false;
 };

@@ -15,11 +15,11 @@ namespace fastccd::tools {
 
 /// Columns `pair,toi`: pairs in contact with their time of impact in 17 significant digits (which
 /// read back to the same double), invalid pairs with `nan`, in pair order. Appears on commit(): see
-/// OutputFile, also for the meaning of "-".
+/// OutputFile, also for the meaning of "-". With `proof` a third column, `proven`: 1 or 0; empty for invalid pairs.
 class HitsFile {
 public:
     /// Throws InputError.
-    explicit HitsFile(const std::filesystem::path& path);
+    HitsFile(const std::filesystem::path& path, bool proof);
 
     /// Appends one piece of the pairs: contacts and invalid pairs, each in ascending order, numbered
     /// from `first_pair`. Throws as OutputFile::write.
@@ -32,6 +32,7 @@ private:
     void flush();
 
     OutputFile file_;
+    bool proof_;
     fmt::memory_buffer text_;
 };
 

@@ -27,6 +27,7 @@ void throw_unless_ok(const Status& status)
         throw CLI::ValidationError(fmt::format("{}; available here: {}", message(status.error), available_isas()),
                                    CLI::ExitCodes::ValidationError);
     }
+    if (status.error == Error::exact_unavailable) throw CLI::ValidationError("--exact", message(status.error));
     throw std::logic_error(message(status.error));
 }
 
@@ -96,6 +97,7 @@ void NarrowPhaseRun::add(const Summary& part, std::size_t first_pair)
     Summary& sum = totals_.summary;
     sum.pairs += part.pairs;
     sum.contacts += part.contacts;
+    sum.proven += part.proven;
     sum.odd += part.odd;
     sum.even += part.even;
     sum.invalid += part.invalid;
@@ -124,7 +126,7 @@ void run_narrow_phase(const PairOptions& options, const Question& question,
     std::optional<Totals> totals;
     on_threads(options.threads, [&] {
         std::optional<HitsFile> hits;
-        if (!options.hits.empty()) hits.emplace(options.hits);
+        if (!options.hits.empty()) hits.emplace(options.hits, options.proof);
         // Rows on a terminal are progress enough, and would run into the bar.
         const bool rows_on_terminal = OutputFile::is_standard_output(options.hits) && ::isatty(STDOUT_FILENO) != 0;
         Progress progress{question.pairs, !options.quiet && !rows_on_terminal};

@@ -46,7 +46,7 @@ struct Totals {
     int threads = 1;
 };
 
-/// Throws CLI::ValidationError if FASTCCD_ISA is at fault, std::logic_error for any other error: options
+/// Throws CLI::ValidationError if FASTCCD_ISA or a build without the exact verdict is at fault, std::logic_error for any other error: options
 /// are checked when they are parsed, and the program's own arrays fit each other.
 void throw_unless_ok(const Status& status);
 

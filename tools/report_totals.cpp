@@ -55,10 +55,13 @@ std::string text_report(const PairOptions& options, const Question& question, co
     };
 
     line(kind_name(options.kind), question.source);
-    line("asked", fmt::format("t in [0, {}], tolerance {}{}", options.narrow_phase.t_max, options.narrow_phase.tolerance,
-                              options.narrow_phase.reference ? ", certified search on every pair" : ""));
+    line("asked", fmt::format("t in [0, {}], tolerance {}{}{}", options.narrow_phase.t_max, options.narrow_phase.tolerance,
+                              options.narrow_phase.reference ? ", certified search on every pair" : "",
+                              options.narrow_phase.exact ? ", exact verdict" : ""));
     line("pairs", with_commas(sum.pairs));
     line("contacts", with_commas(sum.contacts) + share(sum.contacts, sum.pairs));
+    line("  proven", with_commas(sum.proven));
+    line("  possible", with_commas(sum.contacts - sum.proven));
     if (options.parity) {
         line("  odd", with_commas(sum.odd));
         line("  even", with_commas(sum.even));
@@ -91,6 +94,8 @@ std::string json_report(const PairOptions& options, const Question& question, co
     if (question.seed) json["seed"] = *question.seed;
     json["pairs"] = sum.pairs;
     json["contacts"] = sum.contacts;
+    json["proven"] = sum.proven;
+    json["possible"] = sum.contacts - sum.proven;
     json["odd"] = options.parity ? Json(sum.odd) : Json(nullptr);
     json["even"] = options.parity ? Json(sum.even) : Json(nullptr);
     json["invalid"] = sum.invalid;
@@ -108,6 +113,7 @@ std::string json_report(const PairOptions& options, const Question& question, co
     json["tolerance"] = options.narrow_phase.tolerance;
     json["t_max"] = options.narrow_phase.t_max;
     json["reference"] = options.narrow_phase.reference;
+    json["exact"] = options.narrow_phase.exact;
     json["scalar_pairs"] = sum.scalar_pairs;
     // File names need not be UTF-8, JSON has to be.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

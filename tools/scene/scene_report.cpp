@@ -66,6 +66,8 @@ void add_sums(Json& json, const KindTotals& totals)
 {
     json["candidates"] = totals.candidates;
     json["contacts"] = totals.contacts;
+    json["proven"] = totals.proven;
+    json["possible"] = totals.contacts - totals.proven;
     json["earliest"] = json_contact(totals.earliest);
     json["broad_phase_seconds"] = totals.broad_seconds;
     json["broad_phase_candidates_per_second"] = rate(totals.candidates, totals.broad_seconds);
@@ -96,8 +98,9 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
                               steps == 1 ? "" : "s"));
     line("mesh", fmt::format("{} vertices, {} faces, {} edges", with_commas(totals.vertices),
                              with_commas(totals.faces), with_commas(totals.edges)));
-    line("asked", fmt::format("t in [0, {}] of every step, tolerance {}{}", asked.t_max, asked.tolerance,
-                              asked.reference ? ", certified search on every pair" : ""));
+    line("asked", fmt::format("t in [0, {}] of every step, tolerance {}{}{}", asked.t_max, asked.tolerance,
+                              asked.reference ? ", certified search on every pair" : "",
+                              asked.exact ? ", exact verdict" : ""));
 
     fmt::format_to(std::back_inserter(out), "\n{:>5} {:<4} {:>13} {:>11} {:>9} {:>9} {:>9}  {}\n", "step", "kind",
                    "candidates", "contacts", "broad, s", "narrow, s", "M pairs/s", "earliest contact");
@@ -121,6 +124,8 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
                                           with_commas(sums.candidates)));
     }
     line("all", fmt::format("{} contacts in {} candidates", with_commas(all.contacts), with_commas(all.candidates)));
+    line("  proven", with_commas(all.proven));
+    line("  possible", with_commas(all.contacts - all.proven));
     if (all.earliest) {
         line("earliest", fmt::format("toi {:.17g} in step {}, {}", all.earliest->toi, all.earliest->step,
                                      what_touches(*all.earliest)));
@@ -159,6 +164,7 @@ std::string scene_json_report(const SceneOptions& options, const SceneTotals& to
     json["tolerance"] = asked.tolerance;
     json["t_max"] = asked.t_max;
     json["reference"] = asked.reference;
+    json["exact"] = asked.exact;
     json["steps"] = Json::array();
     for (std::size_t number = 0; number < totals.steps.size(); ++number) {
         const StepTotals& step = totals.steps[number];

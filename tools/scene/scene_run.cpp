@@ -156,10 +156,11 @@ private:
         }
         totals.candidates += piece.size();
         totals.contacts += contacts_.size();
+        totals.proven += summary.proven;
         totals.scalar_pairs += summary.scalar_pairs;
         if (hits_ != nullptr) {
             for (const Contact& contact : contacts_) {
-                hits_->append(step_number, kind, pair_vertices(step, piece[contact.pair]), contact.toi);
+                hits_->append(step_number, kind, pair_vertices(step, piece[contact.pair]), contact);
             }
         }
         if (saved_ != nullptr) saved_->append(step, piece);
@@ -199,7 +200,7 @@ SceneTotals answer_steps(const SceneOptions& options)
 
     const std::string& hits_path = options.common.hits;
     std::optional<SceneHits> hits;
-    if (!hits_path.empty()) hits.emplace(hits_path);
+    if (!hits_path.empty()) hits.emplace(hits_path, options.common.proof);
     std::optional<SavedPairs> saved;
     if (!options.save_pairs.empty()) saved.emplace(options.save_pairs, frames.step_count());
     // Rows on a terminal are progress enough, and would run into the bar.

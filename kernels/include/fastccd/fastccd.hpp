@@ -32,7 +32,7 @@ namespace fastccd {
 /// root counting as 2; 0 for no contact and for contacts whose roots cannot be counted (the motion
 /// stays coplanar to within rounding). This is the paper's odd / even distinction (Table 1).
 ///
-/// O(pairs); no allocation that grows with the number of pairs.
+/// O(pairs); no allocation that grows with the number of pairs (but for Options::exact).
 Status time_of_impact(PairKind kind, const PairView& pairs, const Options& options, std::span<double> toi,
                       Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
 

@@ -1,0 +1,149 @@
+// Proven and possible, and the exact verdict: against the oracle, whose rational arithmetic shares no code with the library's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+#include "oracle/exact_ccd.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
+
+struct Found {
+    std::vector<Contact> contacts;
+    Summary summary;
+};
+
+Found find(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Options& options)
+{
+    Found found;
+    const Status status = find_contacts(pair_kind(kind), interleaved(pairs), options, found.contacts, nullptr, &found.summary);
+    if (!status.ok()) throw std::runtime_error(message(status.error));
+    return found;
+}
+
+TEST(Exact, VerdictIsTheOracles)
+{
+    for (const auto kind : kinds)
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 51, 150, pairs);
+            for (const double t_max : {1.0, 0.7, 1e-3})
+                for (const double tolerance : {1e-3, 1e-9, 1e-15}) {
+                    if (t_max != 1.0 && tolerance != 1e-9) continue;
+                    Options options;
+                    options.exact = true;
+                    options.t_max = t_max;
+                    options.tolerance = tolerance;
+                    const Found found = find(kind, pairs, options);
+                    EXPECT_EQ(found.summary.proven, found.summary.contacts);
+                    auto contact = found.contacts.begin();
+                    for (std::size_t i = 0; i < pairs.size(); ++i) {
+                        const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i], t_max);
+                        const bool reported = contact != found.contacts.end() && contact->pair == i;
+                        ASSERT_EQ(reported, verdict.contact) << kind_name(kind) << ' ' << family << ' ' << lossless(pairs[i]);
+                        if (!reported) continue;
+                        EXPECT_TRUE(contact->proven);
+                        EXPECT_GE(contact->toi, verdict.t_lo - std::max(tolerance, 0x1p-49)) << "early: " << family << ' ' << lossless(pairs[i]);
+                        EXPECT_LE(contact->toi, verdict.t_hi) << "late: " << family << ' ' << lossless(pairs[i]);
+                        ++contact;
+                    }
+                }
+        }
+}
+
+TEST(Exact, ProvenIsNeverWrong)
+{
+    std::size_t proven = 0, contacts = 0;
+    for (const auto kind : kinds)
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 52, 300, pairs);
+            for (const double tolerance : {0.3, 1e-6, 1e-12}) {
+                Options options;
+                options.tolerance = tolerance;
+                const Found found = find(kind, pairs, options);
+                contacts += found.contacts.size();
+                EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(found.contacts, true, &Contact::proven)), found.summary.proven);
+                for (const Contact& contact : found.contacts) {
+                    if (!contact.proven) continue;
+                    ++proven;
+                    EXPECT_TRUE(oracle::exact_ccd(kind, pairs[contact.pair]).contact)
+                        << kind_name(kind) << ' ' << family << ' ' << lossless(pairs[contact.pair]);
+                }
+            }
+        }
+    std::printf("%zu of %zu contacts of hard pairs proven\n", proven, contacts);
+    EXPECT_GT(proven, contacts / 4);
+}
+
+TEST(Exact, RandomContactsAreProven)
+{
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs;
+        generate("uniform", kind, 53, 20000, pairs);
+        for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
+            Options options;
+            options.tolerance = tolerance;
+            const Found found = find(kind, pairs, options);
+            EXPECT_EQ(found.summary.proven, found.contacts.size()) << tolerance;
+        }
+    }
+}
+
+TEST(Exact, EarliestIsTheMinimumOfTheDenseAnswer)
+{
+    for (const auto kind : kinds)
+        for (const char* family : {"boundary", "degenerate", "near_boundary", "coplanar_map", "uniform"}) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 54, 500, pairs);
+            Options options;
+            options.exact = true;
+            const Answer dense = answer(kind, interleaved(pairs), options);
+            Contact earliest;
+            ASSERT_TRUE(earliest_contact(pair_kind(kind), interleaved(pairs), options, earliest).ok());
+            EXPECT_EQ(earliest.pair, dense.summary.earliest.pair) << family;
+            EXPECT_EQ(earliest.toi, dense.summary.earliest.toi) << family;
+            EXPECT_EQ(earliest.proven, dense.summary.earliest.proven) << family;
+        }
+}
+
+/// Small integer coordinates: contacts at vertices, along edges, in flat faces, always coplanar motion, in every combination.
+TEST(Exact, SmallIntegers)
+{
+    std::uint64_t state = 55;
+    const auto small = [&state](int range) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return static_cast<double>(static_cast<int>((state >> 33) % static_cast<unsigned>(2 * range + 1)) - range);
+    };
+    for (const auto kind : kinds)
+        for (const int range : {1, 2, 3}) {
+            std::vector<oracle::Pair> pairs(4000);
+            for (auto& pair : pairs)
+                for (auto& point : pair)
+                    for (double& x : point) x = small(range);
+            // Every third pair is flat for good.
+            for (std::size_t i = 0; i < pairs.size(); i += 3)
+                for (auto& point : pairs[i]) point[i % 2] = 0.0;
+            Options options;
+            options.exact = true;
+            const Found found = find(kind, pairs, options);
+            auto contact = found.contacts.begin();
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i]);
+                const bool reported = contact != found.contacts.end() && contact->pair == i;
+                ASSERT_EQ(reported, verdict.contact) << kind_name(kind) << ' ' << lossless(pairs[i]);
+                if (!reported) continue;
+                EXPECT_LE(contact->toi, verdict.t_hi) << "late: " << lossless(pairs[i]);
+                EXPECT_GE(contact->toi, verdict.t_lo - 1e-9) << "early: " << lossless(pairs[i]);
+                ++contact;
+            }
+        }
+}
+
+}  // namespace
+}  // namespace fastccd::testing
