@@ -29,6 +29,8 @@ struct LaneQueue {
     alignas(64) double data[fields][capacity];
     unsigned size;
 };
+/// Coordinates of pairs, in the order of PairView, and the pair: a block of many lanes.
+using ScreenedQueue = LaneQueue<25>;
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<27>;
 using RootQueue = LaneQueue<22>;
@@ -52,6 +54,10 @@ struct Refinement {
     alignas(64) double guess[RootQueue::capacity];
 };
 
+/// Pairs that are screened before any of them goes on. Their blocks, 12 KiB, are then still in the first-level cache.
+inline constexpr std::size_t group_pairs = 64;
+static_assert(group_pairs + LaneQueue<1>::most_added + 8 <= LaneQueue<1>::capacity && tile_pairs % group_pairs == 0);
+
 /// Blocks of indexed pairs whose vertices are asked for before they are read.
 inline constexpr std::size_t indexed_ahead = 2;
 
@@ -64,12 +70,14 @@ struct TileScratch {
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
     std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. What lanes report is proven.
-    PairQueue screened;      ///< Pairs without a linear or cubic certificate.
+    ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without an area certificate either.
+    bool dense;              ///< Screening left most pairs of the group before.
     RootSearch search;
     RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.
     Refinement refinement;
-    alignas(64) double block[block_coordinates];  ///< A block in the native layout, where the input is not.
+    /// The blocks of a group in the native layout, where the input is not.
+    alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
     const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
     const double* prefetched;  ///< How far packed input has been asked for.
 };

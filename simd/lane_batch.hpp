@@ -87,26 +87,38 @@ struct BatchTraits<xsimd::avx2> {
 #endif
 
 #if XSIMD_WITH_AVX512BW
-/// The two doubles at offset in a, b, c, d. Loads that broadcast into part of a register do not need the one port that shuffles.
-FASTCCD_INLINE __m512d four_halves(const double* a, const double* b, const double* c, const double* d, int offset)
+/// x y z x' of a and of b.
+FASTCCD_INLINE __m512d two_halves(const double* a, const double* b)
 {
-    __m512d halves = _mm512_maskz_broadcast_f64x2(0x03, _mm_loadu_pd(a + offset));
-    halves = _mm512_mask_broadcast_f64x2(halves, 0x0c, _mm_loadu_pd(b + offset));
-    halves = _mm512_mask_broadcast_f64x2(halves, 0x30, _mm_loadu_pd(c + offset));
-    return _mm512_mask_broadcast_f64x2(halves, 0xc0, _mm_loadu_pd(d + offset));
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(a)), _mm256_loadu_pd(b), 1);
 }
 
+/// y' z' of a, b, c, d.
+FASTCCD_INLINE __m512d four_quarters(const double* a, const double* b, const double* c, const double* d)
+{
+    __m512d quarters = _mm512_maskz_broadcast_f64x2(0x03, _mm_loadu_pd(a + 4));
+    quarters = _mm512_mask_broadcast_f64x2(quarters, 0x0c, _mm_loadu_pd(b + 4));
+    quarters = _mm512_mask_broadcast_f64x2(quarters, 0x30, _mm_loadu_pd(c + 4));
+    return _mm512_mask_broadcast_f64x2(quarters, 0xc0, _mm_loadu_pd(d + 4));
+}
+
+/// Parts of records are put side by side by loads, which do not need the ports that shuffle: ten shuffles instead of the 22 of
+/// whole registers, and 16 loads instead of 24 that broadcast two numbers each.
 FASTCCD_INLINE void transpose_eight_records(const double* const* records, double* start, double* end, std::size_t stride)
 {
     // Copies: the compiler must take it that the stores below might change the originals.
     const double *const r0 = records[0], *const r1 = records[1], *const r2 = records[2], *const r3 = records[3];
     const double *const r4 = records[4], *const r5 = records[5], *const r6 = records[6], *const r7 = records[7];
-    double* const rows[6] = {start, start + stride, start + 2 * stride, end, end + stride, end + 2 * stride};
-    for (int k = 0; k < 6; k += 2) {
-        const __m512d even = four_halves(r0, r2, r4, r6, k), odd = four_halves(r1, r3, r5, r7, k);
-        _mm512_storeu_pd(rows[k], _mm512_unpacklo_pd(even, odd));
-        _mm512_storeu_pd(rows[k + 1], _mm512_unpackhi_pd(even, odd));
-    }
+    const __m512d r02 = two_halves(r0, r2), r13 = two_halves(r1, r3), r46 = two_halves(r4, r6), r57 = two_halves(r5, r7);
+    const __m512d xz_first = _mm512_unpacklo_pd(r02, r13), xz_last = _mm512_unpacklo_pd(r46, r57);
+    const __m512d yx_first = _mm512_unpackhi_pd(r02, r13), yx_last = _mm512_unpackhi_pd(r46, r57);
+    const __m512d even = four_quarters(r0, r2, r4, r6), odd = four_quarters(r1, r3, r5, r7);
+    _mm512_storeu_pd(start, _mm512_shuffle_f64x2(xz_first, xz_last, 0x88));
+    _mm512_storeu_pd(start + stride, _mm512_shuffle_f64x2(yx_first, yx_last, 0x88));
+    _mm512_storeu_pd(start + 2 * stride, _mm512_shuffle_f64x2(xz_first, xz_last, 0xdd));
+    _mm512_storeu_pd(end, _mm512_shuffle_f64x2(yx_first, yx_last, 0xdd));
+    _mm512_storeu_pd(end + stride, _mm512_unpacklo_pd(even, odd));
+    _mm512_storeu_pd(end + 2 * stride, _mm512_unpackhi_pd(even, odd));
 }
 
 template <>

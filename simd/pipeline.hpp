@@ -10,8 +10,8 @@
 //                                                                                  v
 //                                                                           contact or apart
 //
-// Queues pack the lanes that a stage leaves, so that the next one runs on full batches. Packing costs two instructions
-// a field, so batches that are mostly in use skip [screened].
+// Queues pack what a stage leaves, so that the next one runs on full batches. Where few pairs are left, their coordinates are
+// copied one by one; where most are, whole registers are compressed, and [screened] is left out.
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
@@ -37,17 +37,16 @@ public:
     {
         Pipeline pipeline{request, scratch};
         pipeline.prepare();
-        for (std::size_t i = 0; i < request.count; i += block_pairs) {
-            const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
-            const double* block = native_block<kind, L>(request, i, count, scratch);
-            pipeline.prefetcher.at_block(block);
-            for (unsigned lane = 0; lane < count; lane += width) {
-                pipeline.screen(block + lane, static_cast<double>(i + lane), all_lanes(request.count - i - lane));
-                if (scratch.screened.size >= PairQueue::drain_at) pipeline.compare_areas(false);
-                if (scratch.candidates.size >= PairQueue::drain_at) pipeline.find_roots(false);
+        for (std::size_t i = 0; i < request.count; i += group_pairs) {
+            const std::size_t count = request.count - i < group_pairs ? request.count - i : group_pairs;
+            if (scratch.dense) {
+                pipeline.screen_dense_group(request, i, count);
+            } else {
+                pipeline.screen_group(request, i, count);
+                pipeline.compare_screened(false);
             }
         }
-        pipeline.compare_areas(true);
+        pipeline.compare_screened(true);
         pipeline.find_roots(true);
         pipeline.refine(true);
         scratch.prefetched = pipeline.prefetcher.prefetched();
@@ -94,46 +93,113 @@ private:
             set_bit(scratch.is_undecided, static_cast<unsigned>(pairs[__builtin_ctz(lanes)]));
     }
 
-    /// Length and volume certificates on the whole interval. In scenes most lanes end here.
-    FASTCCD_INLINE void screen(const double* coordinates, double first, unsigned lanes)
+    /// The block from pair `i` of the tile on.
+    FASTCCD_INLINE const double* block_of(const TileRequest& request, std::size_t i)
     {
-        PairRecord<L> record;
+        const std::size_t left = request.count - i;
+        const double* const block = native_block<kind, L>(request, i, left < block_pairs ? left : block_pairs, scratch);
+        prefetcher.at_block(block);
+        return block;
+    }
+
+    /// What the length and volume certificates say of a batch.
+    struct Screening {
+        unsigned kept;    ///< Lanes to look into.
+        unsigned beyond;  ///< Lanes whose coordinates lanes do not decide.
+    };
+
+    /// Length and volume certificates on the whole interval. Fills in the record but for `pair`.
+    FASTCCD_INLINE Screening screen(const double* coordinates, PairRecord<L>& record)
+    {
         record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
         Extents<L> extents;
         const LaneMask<L> separated = linear_certificate<kind>(record.r, whole, extents);
         record.scale = scales(extents);
         record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
-        record.pair = broadcast<L>(first) + Lane<L>::lane_number();
-
-        const LaneMask<L> in_range = in_lane_range(record.cubic, extents);
-        const LaneMask<L> apart = separated | cubic_certificate(record.cubic, record.scale.volume, whole);
-        const unsigned decidable = lanes & Lane<L>::bits(in_range);
-        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
-        unsigned kept = decidable & ~Lane<L>::bits(apart);
-        if (kept != 0 && cutoff < 1.0) kept &= ~Lane<L>::bits(apart_until_cutoff(record));
-        if (2 * static_cast<unsigned>(__builtin_popcount(kept)) >= width)
-            compare_areas(record, kept);
-        else if (kept != 0)
-            push(scratch.screened, kept, record);
+        const unsigned in_range = Lane<L>::bits(in_lane_range(record.cubic, extents));
+        const unsigned apart = Lane<L>::bits(separated | cubic_certificate(record.cubic, record.scale.volume, whole));
+        return {in_range & ~apart, all_lanes(width) & ~in_range};
     }
 
-    /// Area certificate on the whole interval.
-    FASTCCD_INLINE void compare_areas(const PairRecord<L>& record, unsigned lanes)
+    /// For scenes, where most pairs end here: screens a group without looking at any result, which no branch predictor could
+    /// foresee, then copies the coordinates of what is left, pair by pair, to [screened].
+    void screen_group(const TileRequest& request, std::size_t first, std::size_t count)
     {
+        const double* blocks[group_pairs / block_pairs];
+        std::uint64_t kept = 0, beyond = 0;
+        for (std::size_t i = 0; i < count; i += block_pairs) {
+            const double* const block = blocks[i / block_pairs] = block_of(request, first + i);
+            for (unsigned lane = 0; lane < block_pairs; lane += width) {
+                PairRecord<L> record;
+                const Screening found = screen(block + lane, record);
+                kept |= std::uint64_t{found.kept} << (i + lane);
+                beyond |= std::uint64_t{found.beyond} << (i + lane);
+            }
+        }
+        const std::uint64_t in_use = count < group_pairs ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
+        kept &= in_use;
+        scratch.is_undecided[first / group_pairs] |= beyond & in_use;
+        scratch.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
+
+        ScreenedQueue& queue = scratch.screened;
+        for (; kept != 0; kept &= kept - 1) {
+            const auto i = static_cast<unsigned>(__builtin_ctzll(kept));
+            const double* const from = blocks[i / block_pairs] + i % block_pairs;
+            double* const to = &queue.data[0][queue.size++];
+#pragma GCC unroll 24
+            for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * ScreenedQueue::capacity] = from[c * block_pairs];
+            to[pair_coordinates * ScreenedQueue::capacity] = static_cast<double>(first + i);
+        }
+    }
+
+    /// Where most pairs go on: straight to the area certificate, without a queue.
+    void screen_dense_group(const TileRequest& request, std::size_t first, std::size_t count)
+    {
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < count; i += block_pairs) {
+            const double* const block = block_of(request, first + i);
+            for (unsigned lane = 0; lane < block_pairs && i + lane < count; lane += width) {
+                PairRecord<L> record;
+                const Screening found = screen(block + lane, record);
+                record.pair = broadcast<L>(static_cast<double>(first + i + lane)) + Lane<L>::lane_number();
+                const unsigned in_use = all_lanes(count - i - lane);
+                if ((in_use & found.beyond) != 0) leave_undecided(record.pair, in_use & found.beyond);
+                kept += static_cast<unsigned>(__builtin_popcount(in_use & found.kept));
+                examine(record, in_use & found.kept);
+            }
+        }
+        scratch.dense = 2 * kept >= count;
+    }
+
+    /// Certificates that need more than screening has computed.
+    FASTCCD_INLINE void examine(const PairRecord<L>& record, unsigned lanes)
+    {
+        if (cutoff < 1.0) lanes &= ~Lane<L>::bits(apart_until_cutoff(record));
+        // Area certificate on the whole interval.
         const auto apart = visit_edge_functions<kind>(
             record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
                 return quadratic_certificate<kind>(p, q, t, s, record.scale, whole);
             });
         lanes &= ~Lane<L>::bits(apart);
-        if (lanes != 0) push(scratch.candidates, lanes, record);
+        if (lanes == 0) return;
+        push(scratch.candidates, lanes, record);
+        if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
     }
 
-    void compare_areas(bool all)
+    /// Takes full batches from the end of [screened], so that what stays need not move; and the rest too if `all`.
+    void compare_screened(bool all)
     {
-        drain(scratch.screened, all, [&](const PairRecord<L>& record, unsigned lanes) FASTCCD_INLINE_LAMBDA {
-            compare_areas(record, lanes);
-            if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
-        });
+        ScreenedQueue& queue = scratch.screened;
+        while (queue.size >= width || (all && queue.size > 0)) {
+            const unsigned count = queue.size < width ? queue.size : width;
+            queue.size -= count;
+            PairRecord<L> record;
+            record.r = relative_motion<L>(&queue.data[0][queue.size], ScreenedQueue::capacity, parameters.t_max);
+            record.scale = scales(extents(record.r));
+            record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
+            record.pair = Lane<L>::load(&queue.data[pair_coordinates][queue.size]);
+            examine(record, all_lanes(count));
+        }
     }
 
     /// The three certificates on [0, cutoff] and one leaf more, with bounds under which the certified search
@@ -150,19 +216,6 @@ private:
                 return quadratic_certificate<kind>(p, q, t, s, record.scale, early);
             });
         return cubic_certificate(cubic, record.scale.volume, early) | apart_in_projections;
-    }
-
-    /// Takes full batches from the front of a queue, and the rest too if `all`.
-    template <class Queue, class Stage>
-    FASTCCD_INLINE static void drain(Queue& queue, bool all, Stage stage)
-    {
-        PairRecord<L> record;
-        unsigned done = 0;
-        for (; done < queue.size && (all || queue.size - done >= width); done += width) {
-            read(queue, done, record);
-            stage(record, all_lanes(queue.size - done));
-        }
-        drop_front(queue, done);
     }
 
     /// The sides of a bracket of half width delta around the guess, within the piece, when f certainly
