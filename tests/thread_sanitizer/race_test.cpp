@@ -1,0 +1,264 @@
+// Every public entry point on many tiles, alone and from several callers at once, for ThreadSanitizer to watch; the answers are
+// those of one thread.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <thread>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Pieces of less than a tile, which the library runs on the caller's thread.
+Answer one_thread_answer(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Options& options)
+{
+    constexpr std::size_t piece = 1000;
+    Answer whole;
+    for (std::size_t first = 0; first < pairs.size(); first += piece) {
+        const std::size_t count = std::min(piece, pairs.size() - first);
+        const Answer part = answer(kind, PairView::interleaved(pairs[first][0].data(), count), options);
+        whole.toi.insert(whole.toi.end(), part.toi.begin(), part.toi.end());
+        whole.roots.insert(whole.roots.end(), part.roots.begin(), part.roots.end());
+    }
+    return whole;
+}
+
+/// The smallest time, ties to the smaller index.
+Contact earliest_of(const Answer& answers)
+{
+    Contact earliest = Summary{}.earliest;
+    for (std::size_t i = 0; i < answers.toi.size(); ++i)
+        if (answers.toi[i] < earliest.toi) {
+            earliest.pair = i;
+            earliest.toi = answers.toi[i];
+        }
+    return earliest;
+}
+
+/// Pairs, packed and as a mesh in which each has vertices of its own, how to ask about them, and what one thread answers.
+class Input {
+public:
+    Input(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Options& how)
+        : packed{to_buffer(pairs)}, options{how}, expected{one_thread_answer(kind, pairs, how)}
+    {
+        for (const oracle::Pair& pair : pairs) add(pair);
+        const std::size_t n = start_.size();
+        mesh = MovingMesh{PositionView::rows(start_[0].data(), n), PositionView::rows(end_[0].data(), n),
+                          IndexView::rows(faces_[0].data(), faces_.size(), 3), IndexView::rows(edges_[0].data(), edges_.size(), 2)};
+    }
+
+    PairBuffer packed;
+    MovingMesh mesh;
+    std::vector<VertexFace> vertex_face;
+    std::vector<EdgeEdge> edge_edge;
+    Options options;
+    Answer expected;
+
+private:
+    void add(const oracle::Pair& pair)
+    {
+        const auto x0 = static_cast<std::int32_t>(start_.size()), edge = static_cast<std::int32_t>(edges_.size());
+        start_.insert(start_.end(), pair.begin(), pair.begin() + 4);
+        end_.insert(end_.end(), pair.begin() + 4, pair.end());
+        vertex_face.push_back({x0, static_cast<std::int32_t>(faces_.size())});
+        faces_.push_back({x0 + 1, x0 + 2, x0 + 3});
+        edge_edge.push_back({edge, edge + 1});
+        edges_.insert(edges_.end(), {{x0, x0 + 1}, {x0 + 2, x0 + 3}});
+    }
+
+    std::vector<std::array<double, 3>> start_, end_;
+    std::vector<std::array<std::int32_t, 3>> faces_;
+    std::vector<std::array<std::int32_t, 2>> edges_;
+};
+
+/// Seven tiles, with contacts in each, with invalid pairs, and with pairs for the certified search: `hard` of some families, in
+/// which contact at time 0 is frequent.
+std::vector<oracle::Pair> mixed_pairs(oracle::Kind kind, std::size_t hard)
+{
+    std::vector<oracle::Pair> pairs, family_pairs;
+    generate("uniform", kind, 71, 6500, pairs);
+    for (const char* family : {"t0_contact", "grazing_exact", "boundary", "coplanar_map", "simcloth"}) {
+        generate(family, kind, 72, hard, family_pairs);
+        pairs.insert(pairs.end(), family_pairs.begin(), family_pairs.end());
+    }
+    std::shuffle(pairs.begin(), pairs.end(), std::mt19937_64{73});
+    for (std::size_t i = 300; i < pairs.size(); i += 700) pairs[i][4][1] = std::numeric_limits<double>::quiet_NaN();
+    return pairs;
+}
+
+/// Several tiles of contacts after time 0, the later ones first: every tile has a better one than those before.
+std::vector<oracle::Pair> approaching_pairs(oracle::Kind kind)
+{
+    std::vector<oracle::Pair> pairs;
+    generate("near_interior", kind, 74, 6500, pairs);
+    const std::vector<double> toi = one_thread_answer(kind, pairs, {}).toi;
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (toi[i] > 0.0 && toi[i] < infinity) order.push_back(i);
+    std::ranges::sort(order, std::ranges::greater{}, [&](std::size_t i) { return toi[i]; });
+    std::vector<oracle::Pair> result;
+    for (const std::size_t i : order) result.push_back(pairs[i]);
+    return result;
+}
+
+const std::vector<Input>& inputs(oracle::Kind kind)
+{
+    const auto make = [](oracle::Kind of) {
+        Options exact;
+        exact.exact = true;
+        std::vector<Input> result;
+        result.emplace_back(of, mixed_pairs(of, 200), Options{});
+        result.emplace_back(of, mixed_pairs(of, 20), exact);
+        result.emplace_back(of, approaching_pairs(of), Options{});
+        return result;
+    };
+    static const std::vector<Input> vertex_face = make(oracle::Kind::vertex_face), edge_edge = make(oracle::Kind::edge_edge);
+    return kind == oracle::Kind::vertex_face ? vertex_face : edge_edge;
+}
+
+/// What every entry point answers about the same pairs.
+struct Answers {
+    std::vector<double> toi;
+    Answer with_roots;
+    std::vector<Contact> contacts;
+    std::vector<std::size_t> invalid;
+    Contact earliest{};
+};
+
+void require(const Status& status)
+{
+    if (!status.ok()) throw std::runtime_error(message(status.error));
+}
+
+/// `pairs`: a kind and a view, or a mesh and a span.
+template <class... Pairs>
+Answers ask_all(std::size_t size, const Options& options, const Pairs&... pairs)
+{
+    Answers found;
+    found.toi.resize(size);
+    found.with_roots.toi.resize(size);
+    found.with_roots.roots.resize(size);
+    require(time_of_impact(pairs..., options, found.toi));
+    require(time_of_impact(pairs..., options, found.with_roots.toi, &found.with_roots.summary, found.with_roots.roots));
+    require(find_contacts(pairs..., options, found.contacts, &found.invalid));
+    require(earliest_contact(pairs..., options, found.earliest));
+    return found;
+}
+
+Answers ask_packed(oracle::Kind kind, const Input& input, const Options& options)
+{
+    return ask_all(input.packed.size(), options, pair_kind(kind), input.packed.view());
+}
+
+Answers ask_indexed(oracle::Kind kind, const Input& input, const Options& options)
+{
+    const std::size_t size = input.packed.size();
+    return kind == oracle::Kind::vertex_face ? ask_all(size, options, input.mesh, std::span<const VertexFace>{input.vertex_face})
+                                             : ask_all(size, options, input.mesh, std::span<const EdgeEdge>{input.edge_edge});
+}
+
+void expect_right(const Input& input, const Answers& found)
+{
+    const Answer& expected = input.expected;
+    const std::size_t size = expected.toi.size();
+    EXPECT_EQ(first_difference(expected, found.with_roots), size);
+    EXPECT_EQ(first_difference(expected, {found.toi, expected.roots, {}}), size);
+
+    std::vector<std::size_t> invalid;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+        const double toi = expected.toi[i];
+        if (std::isnan(toi)) invalid.push_back(i);
+        if (!(toi < infinity)) continue;
+        ASSERT_LT(next, found.contacts.size());
+        EXPECT_EQ(found.contacts[next].pair, i);
+        EXPECT_EQ(found.contacts[next++].toi, toi);
+    }
+    EXPECT_EQ(found.contacts.size(), next);
+    EXPECT_EQ(found.with_roots.summary.contacts, next);
+    EXPECT_EQ(found.invalid, invalid);
+    EXPECT_EQ(found.earliest.pair, earliest_of(expected).pair);
+    EXPECT_EQ(found.earliest.toi, earliest_of(expected).toi);
+}
+
+constexpr std::size_t callers = 3;
+
+/// Calls ask(caller) on a thread for each caller.
+template <class Ask>
+void ask_at_once(const Ask& ask)
+{
+    std::vector<std::jthread> threads;  // joined at the end
+    for (std::size_t caller = 0; caller < callers; ++caller) threads.emplace_back(ask, caller);
+}
+
+/// Before all other tests, which begin with a call alone: what that one stored for later ones, they would read without a race.
+TEST(FirstCalls, AtOnce)
+{
+    const std::vector<oracle::Pair> pairs = mixed_pairs(oracle::Kind::vertex_face, 100);
+    std::array<Answer, callers> found;
+    ask_at_once([&](std::size_t caller) { found[caller] = answer(oracle::Kind::vertex_face, interleaved(pairs), {}); });
+    const Answer expected = one_thread_answer(oracle::Kind::vertex_face, pairs, {});
+    for (const Answer& of_caller : found) EXPECT_EQ(first_difference(expected, of_caller), pairs.size());
+}
+
+class Races : public ::testing::TestWithParam<oracle::Kind> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, Races, ::testing::Values(oracle::Kind::vertex_face, oracle::Kind::edge_edge),
+                         [](const auto& kind) { return kind.param == oracle::Kind::vertex_face ? "VertexFace" : "EdgeEdge"; });
+
+TEST_P(Races, EveryEntryPoint)
+{
+    for (const Input& input : inputs(GetParam())) {
+        ASSERT_TRUE(input.mesh.status().ok());
+        for (const Isa isa : isas_to_test()) {
+            SCOPED_TRACE(name(isa));
+            Options options = input.options;
+            options.isa = isa;
+            expect_right(input, ask_packed(GetParam(), input, options));
+            expect_right(input, ask_indexed(GetParam(), input, options));
+        }
+    }
+}
+
+TEST_P(Races, SeveralCallersAtOnce)
+{
+    for (const Input& input : inputs(GetParam())) {
+        std::array<Answers, callers> packed, indexed;
+        ask_at_once([&](std::size_t caller) {
+            packed[caller] = ask_packed(GetParam(), input, input.options);
+            indexed[caller] = ask_indexed(GetParam(), input, input.options);
+        });
+        for (const Answers& answers : packed) expect_right(input, answers);
+        for (const Answers& answers : indexed) expect_right(input, answers);
+    }
+}
+
+TEST(IndexCheck, MoreIndicesThanOneTaskChecks)
+{
+    const Input& input = inputs(oracle::Kind::vertex_face)[0];
+    std::vector<VertexFace> pairs;
+    while (pairs.size() < 200000) pairs.insert(pairs.end(), input.vertex_face.begin(), input.vertex_face.end());
+    Contact found{};
+    require(earliest_contact(input.mesh, std::span<const VertexFace>{pairs}, {}, found));
+    EXPECT_EQ(found.pair, earliest_of(input.expected).pair);
+    EXPECT_EQ(found.toi, earliest_of(input.expected).toi);
+
+    for (const std::size_t bad : {190000u, 140000u, 70000u, 100u}) {
+        pairs[bad].face = -1;
+        const Status status = earliest_contact(input.mesh, std::span<const VertexFace>{pairs}, {}, found);
+        EXPECT_EQ(status.error, Error::index_out_of_range);
+        EXPECT_EQ(status.pair, bad);
+    }
+}
+
+}  // namespace
+}  // namespace fastccd::testing
