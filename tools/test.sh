@@ -2,7 +2,7 @@
 # Sets everything up, builds with warnings as errors, runs all tests.
 #
 #   tools/test.sh [ARGUMENT...]   arguments go to ctest
-#   tools/test.sh --all           and then: sanitizers, short fuzzing, an emulated x86-64 without AVX, an emulated arm64
+#   tools/test.sh --all           and then: sanitizers, short fuzzing, races, an emulated x86-64 without AVX, an emulated arm64
 source "$(dirname "$0")/setup.sh"
 
 all=false
@@ -22,5 +22,6 @@ $all || exit 0
 
 source "$root/tools/test_all.sh"
 test_sanitized_and_fuzz
+test_races
 test_other_machines
 say "all passed"
