@@ -20,19 +20,31 @@ FASTCCD_INLINE L norm(const Vector3<L>& v)
     return sqrt(dot(v, v));
 }
 
-template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, L centre, L delta,
-                                            const ErrorBounds& bounds)
+/// C1 and C2 of eq. 6 over the whole motion, but for a dozen roundings.
+template <class L>
+struct MotionBounds {
+    L edge, speed;
+};
+
+template <class L>
+FASTCCD_INLINE MotionBounds<L> motion_bounds(const RelativeMotion<L>& r)
 {
     // Squares first, one square root each: the six differences of the four points.
     const auto largest_square = [](const Vector3<L>& a, const Vector3<L>& b, const Vector3<L>& c) FASTCCD_INLINE_LAMBDA {
         const Vector3<L> ab = subtract(b, a), ac = subtract(c, a), bc = subtract(c, b);
         return max(max(dot(a, a), dot(b, b), dot(c, c)), max(dot(ab, ab), dot(ac, ac), dot(bc, bc)));
     };
-    const L edge = sqrt(max(largest_square(r.start[0], r.start[1], r.start[2]),
-                            largest_square(r.end[0], r.end[1], r.end[2])));
-    const L speed = sqrt(largest_square(subtract(r.end[0], r.start[0]), subtract(r.end[1], r.start[1]),
-                                        subtract(r.end[2], r.start[2])));
+    return {sqrt(max(largest_square(r.start[0], r.start[1], r.start[2]),
+                     largest_square(r.end[0], r.end[1], r.end[2]))),
+            sqrt(largest_square(subtract(r.end[0], r.start[0]), subtract(r.end[1], r.start[1]),
+                                subtract(r.end[2], r.start[2])))};
+}
+
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, L centre, L delta,
+                                            const ErrorBounds& bounds)
+{
+    const auto [edge, speed] = motion_bounds(r);
     // The roundings of squares, sums, roots and products below, a dozen u, rounded up; what the differences
     // themselves are off by is in bounds.area().
     const L inflate = broadcast<L>(1.0 + 0x1p-30);

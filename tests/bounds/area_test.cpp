@@ -72,6 +72,31 @@ mpf_class wide_excess(const Input& in, double centre)
     return mpf_class(abs(mpf_class(p + t - q - whole, 1024)));
 }
 
+/// The constants of eq. 6 against any edge at any time, and any difference of velocities: each in units of its bound.
+double motion_ratio(const Input& in)
+{
+    const Computed c{in};
+    const auto bounds = portable::motion_bounds<double>(c.r);
+    const ExactRelativeMotion r{in.x.data(), in.t_max};
+    double worst = 0.0;
+    for (int i = 0; i < 3; ++i)
+        for (int k = i; k < 3; ++k) {
+            const auto difference = [&](double s) { return i == k ? r.at(i, s) : r.at(k, s) - r.at(i, s); };
+            for (const double s : {0.0, in.a, in.b, 1.0}) worst = std::max(worst, wide_norm(difference(s)).get_d() / bounds.edge);
+            worst = std::max(worst, wide_norm(difference(1.0) - difference(0.0)).get_d() / bounds.speed);
+        }
+    return worst;
+}
+
+TEST(AreaInclusion, MotionBounds)
+{
+    Adversary adversary{16};
+    const auto [worst, found] = adversary.worst(
+        20, 100, [&] { return adversary.input(1.0, -3, 3); }, [&](const Input& in) { return adversary.changed(in); }, motion_ratio);
+    EXPECT_LE(found, 1.0 + 0x1p-40) << text(worst);
+    EXPECT_GT(found, 1.0 - 0x1p-40);
+}
+
 template <PairKind kind>
 double rounding_ratio(const Input& in)
 {
