@@ -9,6 +9,7 @@ namespace fastccd {
 
 Status check_pairs(const std::int32_t* pairs, std::size_t count, std::size_t first_size, std::size_t second_size)
 {
+    if (count == 0) return {};
     const auto good = [&](std::size_t i) {
         return in_range(pairs[2 * i], first_size) && in_range(pairs[2 * i + 1], second_size);
     };

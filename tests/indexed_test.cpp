@@ -243,6 +243,18 @@ TEST(Earliest, TiesGoToTheSmallerIndexOnAnyThreadCount)
     }
 }
 
+TEST(Indexed, NoPairs)
+{
+    const MadeMesh made{69, 1};
+    const MovingMesh mesh = made.mesh();
+    Summary summary;
+    ASSERT_TRUE(time_of_impact(mesh, std::span<const VertexFace>{}, {}, {}, &summary).ok());
+    EXPECT_EQ(summary.pairs, 0u);
+    std::vector<Contact> contacts;
+    ASSERT_TRUE(find_contacts(mesh, std::span<const EdgeEdge>{}, {}, contacts).ok());
+    EXPECT_TRUE(contacts.empty());
+}
+
 TEST(Earliest, NoContactAndNoPairs)
 {
     Contact found{};
