@@ -1,54 +1,17 @@
 // The public entry points: dense, compact and earliest answers for packed and for indexed pairs.
 #include <fastccd/fastccd.hpp>
 
-#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <mutex>
 
-#include <index_check.hpp>
+#include <checked_source.hpp>
+#include <guarded.hpp>
 #include <parallel_tiles.hpp>
+#include <shared_best.hpp>
 
 namespace fastccd {
 
 namespace {
-
-/// A source and whether its indices are in range.
-struct CheckedSource {
-    PairSource source;
-    Status status;
-};
-
-CheckedSource packed(const PairView& pairs) { return {{&pairs, {}, pairs.size()}, {}}; }
-
-CheckedSource indexed(const MovingMesh& mesh, const std::int32_t* pairs, std::size_t count, const IndexView& primitives,
-                      std::size_t first_size)
-{
-    if (!mesh.status().ok()) return {{}, mesh.status()};
-    return {{nullptr, {mesh.records(), pairs, primitives.data, primitives.row_stride, primitives.column_stride}, count},
-            check_pairs(pairs, count, first_size, primitives.size)};
-}
-
-// The pair types are two int32 each, read as such.
-static_assert(sizeof(VertexFace) == 2 * sizeof(std::int32_t) && sizeof(EdgeEdge) == 2 * sizeof(std::int32_t));
-
-CheckedSource indexed(const MovingMesh& mesh, std::span<const VertexFace> pairs)
-{
-    return indexed(mesh, pairs.empty() ? nullptr : &pairs[0].vertex, pairs.size(), mesh.faces(), mesh.vertex_count());
-}
-
-CheckedSource indexed(const MovingMesh& mesh, std::span<const EdgeEdge> pairs)
-{
-    return indexed(mesh, pairs.empty() ? nullptr : &pairs[0].edge_a, pairs.size(), mesh.edges(), mesh.edges().size);
-}
-
-Status prepare(PairKind kind, const CheckedSource& checked, const Options& options, bool count_roots, Job& job)
-{
-    if (!checked.status.ok()) return checked.status;
-    return prepare(kind, checked.source, options, count_roots, job);
-}
-
-Job no_job(PairKind kind) { return {kind, {}, {1.0, 1.0, false}, nullptr, false}; }
 
 Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, std::span<double> toi, Summary* summary,
              std::span<std::uint8_t> roots)
@@ -105,7 +68,9 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
             share.invalid_end = worker.invalid.size();
         });
 
+    // Both before either is written to: on want of memory the caller's lists stay as they were.
     contacts.reserve(contacts.size() + totals.contacts);
+    if (invalid != nullptr) invalid->reserve(invalid->size() + totals.invalid);
     for (const TileShare& share : shares) {
         const auto at = [](const auto& list, std::size_t i) { return list.begin() + static_cast<std::ptrdiff_t>(i); };
         contacts.insert(contacts.end(), at(share.worker->contacts, share.contacts_begin),
@@ -118,36 +83,6 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
     return {};
 }
 
-/// The best contact so far, shared by all workers. Its toi is read without the lock: an old value only drops less.
-class SharedBest {
-public:
-    [[nodiscard]] double toi() const { return toi_.load(std::memory_order_relaxed); }
-
-    /// True if no pair from `first` on can be better: contact at time 0 in an earlier pair.
-    bool settled_before(std::size_t first)
-    {
-        if (toi() > 0.0) return false;
-        const std::lock_guard lock{mutex_};
-        return best_.pair < first;
-    }
-
-    void offer(const Contact& contact)
-    {
-        if (contact.toi > toi()) return;
-        const std::lock_guard lock{mutex_};
-        if (contact.toi > best_.toi || (contact.toi == best_.toi && contact.pair > best_.pair)) return;
-        best_ = contact;
-        toi_.store(contact.toi, std::memory_order_relaxed);
-    }
-
-    [[nodiscard]] const Contact& contact() const { return best_; }
-
-private:
-    std::mutex mutex_;
-    Contact best_ = Summary{}.earliest;
-    std::atomic<double> toi_{Summary{}.earliest.toi};
-};
-
 Status earliest(PairKind kind, const CheckedSource& pairs, const Options& options, Contact& contact, Summary* summary)
 {
     Job job = no_job(kind);
@@ -155,11 +90,7 @@ Status earliest(PairKind kind, const CheckedSource& pairs, const Options& option
 
     SharedBest best;
     tbb::combinable<TileWorker> workers;
-    const auto cutoff = [&](std::size_t first) {
-        if (best.settled_before(first)) return -1.0;
-        // In the parameter s; rounding is far below the leaf that apart_until_cutoff adds.
-        return std::min(best.toi() / job.parameters.t_max, 1.0);
-    };
+    const auto cutoff = [&](std::size_t first) { return best.cutoff(job, first); };
     Summary totals = for_each_tile(job, workers, cutoff, [&](TileWorker& worker, std::size_t, std::size_t) {
         best.offer(worker.totals.earliest);
     });
@@ -173,56 +104,56 @@ Status earliest(PairKind kind, const CheckedSource& pairs, const Options& option
 }  // namespace
 
 Status time_of_impact(PairKind kind, const PairView& pairs, const Options& options, std::span<double> toi,
-                      Summary* summary, std::span<std::uint8_t> roots)
+                      Summary* summary, std::span<std::uint8_t> roots) noexcept
 {
-    return dense(kind, packed(pairs), options, toi, summary, roots);
+    return guarded([&] { return dense(kind, packed(pairs), options, toi, summary, roots); });
 }
 
 Status time_of_impact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
-                      std::span<double> toi, Summary* summary, std::span<std::uint8_t> roots)
+                      std::span<double> toi, Summary* summary, std::span<std::uint8_t> roots) noexcept
 {
-    return dense(PairKind::vertex_face, indexed(mesh, pairs), options, toi, summary, roots);
+    return guarded([&] { return dense(PairKind::vertex_face, indexed(mesh, pairs), options, toi, summary, roots); });
 }
 
 Status time_of_impact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
-                      std::span<double> toi, Summary* summary, std::span<std::uint8_t> roots)
+                      std::span<double> toi, Summary* summary, std::span<std::uint8_t> roots) noexcept
 {
-    return dense(PairKind::edge_edge, indexed(mesh, pairs), options, toi, summary, roots);
+    return guarded([&] { return dense(PairKind::edge_edge, indexed(mesh, pairs), options, toi, summary, roots); });
 }
 
 Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
-                     std::vector<std::size_t>* invalid, Summary* summary)
+                     std::vector<std::size_t>* invalid, Summary* summary) noexcept
 {
-    return compact(kind, packed(pairs), options, contacts, invalid, summary);
+    return guarded([&] { return compact(kind, packed(pairs), options, contacts, invalid, summary); });
 }
 
 Status find_contacts(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
-                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid, Summary* summary)
+                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid, Summary* summary) noexcept
 {
-    return compact(PairKind::vertex_face, indexed(mesh, pairs), options, contacts, invalid, summary);
+    return guarded([&] { return compact(PairKind::vertex_face, indexed(mesh, pairs), options, contacts, invalid, summary); });
 }
 
 Status find_contacts(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
-                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid, Summary* summary)
+                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid, Summary* summary) noexcept
 {
-    return compact(PairKind::edge_edge, indexed(mesh, pairs), options, contacts, invalid, summary);
+    return guarded([&] { return compact(PairKind::edge_edge, indexed(mesh, pairs), options, contacts, invalid, summary); });
 }
 
-Status earliest_contact(PairKind kind, const PairView& pairs, const Options& options, Contact& contact, Summary* summary)
+Status earliest_contact(PairKind kind, const PairView& pairs, const Options& options, Contact& contact, Summary* summary) noexcept
 {
-    return earliest(kind, packed(pairs), options, contact, summary);
+    return guarded([&] { return earliest(kind, packed(pairs), options, contact, summary); });
 }
 
 Status earliest_contact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
-                        Contact& contact, Summary* summary)
+                        Contact& contact, Summary* summary) noexcept
 {
-    return earliest(PairKind::vertex_face, indexed(mesh, pairs), options, contact, summary);
+    return guarded([&] { return earliest(PairKind::vertex_face, indexed(mesh, pairs), options, contact, summary); });
 }
 
 Status earliest_contact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
-                        Contact& contact, Summary* summary)
+                        Contact& contact, Summary* summary) noexcept
 {
-    return earliest(PairKind::edge_edge, indexed(mesh, pairs), options, contact, summary);
+    return guarded([&] { return earliest(PairKind::edge_edge, indexed(mesh, pairs), options, contact, summary); });
 }
 
 const char* message(Error error) noexcept
@@ -237,6 +168,8 @@ const char* message(Error error) noexcept
         case Error::bad_isa_environment:
             return "FASTCCD_ISA names an instruction set that is unknown or not available on this machine";
         case Error::index_out_of_range: return "an index of the pair points outside its array";
+        case Error::invalid_pair: return "a coordinate of the pair is not a finite number";
+        case Error::out_of_memory: return "out of memory, or the system refused a thread";
     }
     return "unknown error";
 }

@@ -29,10 +29,12 @@ Status check_pairs(const std::int32_t* pairs, std::size_t count, std::size_t fir
         while (good(i)) ++i;
         return std::min(found, i);
     };
+    // Not to be cut short when the caller's task group is cancelled.
+    tbb::task_group_context context{tbb::task_group_context::isolated};
     const std::size_t bad =
         count <= grain ? scan({0, count}, count)
                        : tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, count, grain), count, scan,
-                                              [](std::size_t a, std::size_t b) { return std::min(a, b); });
+                                              [](std::size_t a, std::size_t b) { return std::min(a, b); }, context);
     if (bad == count) return {};
     const bool first_is_bad = !in_range(pairs[2 * bad], first_size);
     return {Error::index_out_of_range, bad, pairs[2 * bad + (first_is_bad ? 0 : 1)]};

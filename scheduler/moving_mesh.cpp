@@ -4,6 +4,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <guarded.hpp>
 #include <index_check.hpp>
 
 namespace fastccd {
@@ -22,9 +23,28 @@ Status check_rows(const IndexView& rows, int columns, std::size_t vertices)
     return {};
 }
 
+constexpr std::size_t record_doubles = 8;
+
+void copy_positions(const PositionView& start, const PositionView& end, double* records)
+{
+    constexpr std::size_t grain = 4096;  // 256 KiB of records a task
+    // Not to be cut short when the caller's task group is cancelled.
+    tbb::task_group_context context{tbb::task_group_context::isolated};
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.size(), grain), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            double* const record = records + record_doubles * i;
+            for (int axis = 0; axis < 3; ++axis) {
+                record[axis] = start(i, axis);
+                record[3 + axis] = end(i, axis);
+            }
+            record[6] = record[7] = 0.0;
+        }
+    }, context);
+}
+
 }  // namespace
 
-MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges)
+MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges) noexcept
     : vertex_count_{start.size()}, faces_{faces}, edges_{edges}
 {
     if (start.size() != end.size() || (start.size() > 0 && !(start.has_data() && end.has_data()))) return;
@@ -32,18 +52,10 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_);
     if (!status_.ok() || vertex_count_ == 0) return;
 
-    constexpr std::size_t record = 8;
-    records_ = allocate_aligned(vertex_count_ * record);
-    double* const records = records_.get();
-    constexpr std::size_t grain = 4096;  // 256 KiB of records a task
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertex_count_, grain), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            for (int axis = 0; axis < 3; ++axis) {
-                records[record * i + static_cast<std::size_t>(axis)] = start(i, axis);
-                records[record * i + 3 + static_cast<std::size_t>(axis)] = end(i, axis);
-            }
-            records[record * i + 6] = records[record * i + 7] = 0.0;
-        }
+    records_ = allocate_aligned(vertex_count_ * record_doubles);
+    status_ = records_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
+        copy_positions(start, end, records_.get());
+        return Status{};
     });
 }
 

@@ -38,10 +38,12 @@ Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Cutoff c
     if (tiles == 1) {
         run(0, workers.local());
     } else if (tiles > 1) {
+        // A context of its own: cancelling the caller's task group must not leave pairs unanswered.
+        tbb::task_group_context context{tbb::task_group_context::isolated};
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles), [&](const auto& range) {
             Worker& worker = workers.local();
             for (std::size_t tile = range.begin(); tile != range.end(); ++tile) run(tile, worker);
-        });
+        }, context);
     }
     Summary summary;
     summary.pairs = size;

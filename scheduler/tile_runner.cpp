@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <block_source.hpp>
-#include <certified_search.hpp>
 #include <exact_contact.hpp>
 #include <fastccd/isa.hpp>
 
@@ -68,8 +67,7 @@ void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& 
         load_pair<double>(*job.source.view, first + i, coordinates);
     else
         load_pair<float>(*job.source.view, first + i, coordinates);
-    scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
-    if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
+    const scalar::SearchResult found = answer_pair(job, coordinates);
     scratch.time[i] = found.toi;
     scratch.roots[i] = found.roots;
     const std::uint64_t bit = std::uint64_t{1} << i % 64;
@@ -115,6 +113,13 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
         if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
     job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels, options.exact};
     return {};
+}
+
+scalar::SearchResult answer_pair(const Job& job, const double* coordinates)
+{
+    scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
+    if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
+    return found;
 }
 
 void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch, Summary& totals)

@@ -6,6 +6,7 @@
 
 #include <fastccd/options.hpp>
 #include <fastccd/pair_view.hpp>
+#include <certified_search.hpp>
 #include <kernel_table.hpp>
 
 namespace fastccd {
@@ -21,6 +22,9 @@ struct Job {
 
 /// Checks options and chooses the kernels. On error the job must not be run.
 Status prepare(PairKind kind, const PairSource& source, const Options& options, bool count_roots, Job& job);
+
+/// Answers one pair, of 24 coordinates in the order of PairView, by the certified search.
+scalar::SearchResult answer_pair(const Job& job, const double* coordinates);
 
 /// Answers `count` <= tile_pairs pairs from `first` (a multiple of tile_pairs) on, into time, roots and reported of
 /// the scratch; adds to `totals` everything but `pairs`. With cutoff < 1, pairs whose toi is greater than

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 
@@ -13,16 +14,29 @@
 #define FASTCCD_COUNT_MALLOC 0
 #endif
 #endif
-#if !defined(FASTCCD_COUNT_MALLOC) && defined(__GLIBC__)
+#if !defined(FASTCCD_COUNT_MALLOC)
+#if defined(__GLIBC__)
 #define FASTCCD_COUNT_MALLOC 1
+#else
+#define FASTCCD_COUNT_MALLOC 0
+#endif
 #endif
 
 namespace {
-std::atomic<std::size_t> count{0};
+std::atomic<std::size_t> count{0}, refused{SIZE_MAX};
+
+/// Counts, and tells whether the allocation may be made.
+bool allowed(std::size_t size)
+{
+    count.fetch_add(1, std::memory_order_relaxed);
+    return size < refused.load(std::memory_order_relaxed);
 }
+}  // namespace
 
 namespace fastccd::testing {
 std::size_t allocations() { return count.load(); }
+void refuse_allocations_from(std::size_t bytes) { refused = bytes; }
+bool refuses_every_allocation() { return FASTCCD_COUNT_MALLOC != 0; }
 }  // namespace fastccd::testing
 
 #if FASTCCD_COUNT_MALLOC
@@ -36,23 +50,19 @@ void* __libc_memalign(std::size_t, std::size_t);
 
 void* malloc(std::size_t size)
 {
-    count.fetch_add(1, std::memory_order_relaxed);
-    return __libc_malloc(size);
+    return allowed(size) ? __libc_malloc(size) : nullptr;
 }
 void* calloc(std::size_t n, std::size_t size)
 {
-    count.fetch_add(1, std::memory_order_relaxed);
-    return __libc_calloc(n, size);
+    return allowed(n * size) ? __libc_calloc(n, size) : nullptr;
 }
 void* realloc(void* p, std::size_t size)
 {
-    count.fetch_add(1, std::memory_order_relaxed);
-    return __libc_realloc(p, size);
+    return allowed(size) ? __libc_realloc(p, size) : nullptr;
 }
 void* memalign(std::size_t alignment, std::size_t size)
 {
-    count.fetch_add(1, std::memory_order_relaxed);
-    return __libc_memalign(alignment, size);
+    return allowed(size) ? __libc_memalign(alignment, size) : nullptr;
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
 int posix_memalign(void** p, std::size_t alignment, std::size_t size)
@@ -66,16 +76,24 @@ int posix_memalign(void** p, std::size_t alignment, std::size_t size)
 
 void* operator new(std::size_t size)
 {
-    count.fetch_add(1, std::memory_order_relaxed);
+    if (!allowed(size)) throw std::bad_alloc{};
     if (void* p = std::malloc(size != 0 ? size : 1)) return p;
     throw std::bad_alloc{};
 }
 void* operator new(std::size_t size, std::align_val_t alignment)
 {
-    count.fetch_add(1, std::memory_order_relaxed);
+    if (!allowed(size)) throw std::bad_alloc{};
     const auto a = static_cast<std::size_t>(alignment);
     if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
     throw std::bad_alloc{};
+}
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept
+{
+    try {
+        return operator new(size, alignment);
+    } catch (const std::bad_alloc&) {
+        return nullptr;
+    }
 }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }

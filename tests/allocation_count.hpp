@@ -8,4 +8,9 @@ namespace fastccd::testing {
 /// Allocations so far, by all threads.
 std::size_t allocations();
 
+/// From now on, allocations of at least so many bytes fail; with SIZE_MAX none does. Under a sanitizer only those made by
+/// operator new.
+void refuse_allocations_from(std::size_t bytes);
+bool refuses_every_allocation();
+
 }  // namespace fastccd::testing

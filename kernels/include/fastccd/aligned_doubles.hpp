@@ -5,6 +5,8 @@
 #include <memory>
 #include <new>
 
+#include <fastccd/export.h>
+
 namespace fastccd {
 
 struct ReleaseAligned {
@@ -13,8 +15,8 @@ struct ReleaseAligned {
 };
 using AlignedDoubles = std::unique_ptr<double[], ReleaseAligned>;
 
-/// Not initialised. Aligned to 64 bytes: a cache line, a register of AVX-512. From 4 MiB on aligned to 2 MiB, and the system
+/// Null if there is not that much memory. Not initialised. Aligned to 64 bytes: a cache line, a register of AVX-512. From 4 MiB on aligned to 2 MiB, and the system
 /// is asked for pages of that size: a buffer streamed once in pages of 4 KiB has an address to translate every 21 pairs.
-[[nodiscard]] AlignedDoubles allocate_aligned(std::size_t count);
+[[nodiscard]] FASTCCD_API AlignedDoubles allocate_aligned(std::size_t count) noexcept;
 
 }  // namespace fastccd

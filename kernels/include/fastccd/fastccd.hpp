@@ -7,8 +7,9 @@
 // thread count; bounded work per pair. A pair with a NaN or an infinity gets toi = NaN, the others
 // are answered.
 //
-// All functions are thread-safe, keep no state, run in the caller's oneTBB arena, and do not throw
-// other than std::bad_alloc.
+// All functions may be called from any number of threads at once, keep no state, run in the caller's oneTBB arena,
+// throw nothing and print nothing: what goes wrong is in the Status. Times are in units of the step, coordinates in
+// any unit. Spans and views must stay valid and unchanged during the call.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +17,14 @@
 #include <span>
 #include <vector>
 
+#include <fastccd/export.h>
 #include <fastccd/indexed.hpp>
 #include <fastccd/isa.hpp>
 #include <fastccd/options.hpp>
 #include <fastccd/pair_buffer.hpp>
 #include <fastccd/pair_view.hpp>
+#include <fastccd/single_pair.hpp>
+#include <fastccd/version.h>
 
 namespace fastccd {
 
@@ -33,39 +37,63 @@ namespace fastccd {
 /// stays coplanar to within rounding). This is the paper's odd / even distinction (Table 1).
 ///
 /// O(pairs); no allocation that grows with the number of pairs (but for Options::exact).
-Status time_of_impact(PairKind kind, const PairView& pairs, const Options& options, std::span<double> toi,
-                      Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
+FASTCCD_API Status time_of_impact(PairKind kind, const PairView& pairs, const Options& options, std::span<double> toi,
+                                  Summary* summary = nullptr, std::span<std::uint8_t> roots = {}) noexcept;
 
 /// Appends every pair in contact to `contacts`, in pair order, and the index of every invalid pair
 /// to `invalid` when given.
-Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
-                     std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr);
+FASTCCD_API Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
+                                 std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr) noexcept;
 
 /// The first contact of all: smallest toi, ties to the smallest pair index. pair is SIZE_MAX and toi +infinity if
 /// no pair touches. Pairs that cannot beat the best so far are dropped early; the result is the same as the minimum
 /// of the dense answer, on any number of threads. Invalid pairs are counted in summary->invalid only as far as they
 /// were looked at; contacts are not counted.
-Status earliest_contact(PairKind kind, const PairView& pairs, const Options& options, Contact& earliest,
-                        Summary* summary = nullptr);
+FASTCCD_API Status earliest_contact(PairKind kind, const PairView& pairs, const Options& options, Contact& earliest,
+                                    Summary* summary = nullptr) noexcept;
 
 // The same questions about pairs of a moving mesh, with the same bits as for packed pairs. An index out of range is
 // Error::index_out_of_range with the pair and the index in the Status, before any work.
 
-Status time_of_impact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
-                      std::span<double> toi, Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
-Status time_of_impact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
-                      std::span<double> toi, Summary* summary = nullptr, std::span<std::uint8_t> roots = {});
+FASTCCD_API Status time_of_impact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
+                                  std::span<double> toi, Summary* summary = nullptr, std::span<std::uint8_t> roots = {}) noexcept;
+FASTCCD_API Status time_of_impact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
+                                  std::span<double> toi, Summary* summary = nullptr, std::span<std::uint8_t> roots = {}) noexcept;
 
-Status find_contacts(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
-                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid = nullptr,
-                     Summary* summary = nullptr);
-Status find_contacts(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
-                     std::vector<Contact>& contacts, std::vector<std::size_t>* invalid = nullptr,
-                     Summary* summary = nullptr);
+FASTCCD_API Status find_contacts(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
+                                 std::vector<Contact>& contacts, std::vector<std::size_t>* invalid = nullptr,
+                                 Summary* summary = nullptr) noexcept;
+FASTCCD_API Status find_contacts(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
+                                 std::vector<Contact>& contacts, std::vector<std::size_t>* invalid = nullptr,
+                                 Summary* summary = nullptr) noexcept;
 
-Status earliest_contact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
-                        Contact& earliest, Summary* summary = nullptr);
-Status earliest_contact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
-                        Contact& earliest, Summary* summary = nullptr);
+FASTCCD_API Status earliest_contact(const MovingMesh& mesh, std::span<const VertexFace> pairs, const Options& options,
+                                    Contact& earliest, Summary* summary = nullptr) noexcept;
+FASTCCD_API Status earliest_contact(const MovingMesh& mesh, std::span<const EdgeEdge> pairs, const Options& options,
+                                    Contact& earliest, Summary* summary = nullptr) noexcept;
+
+/// How far a line search may go.
+struct CollisionFreeStep {
+    /// Nothing touches in [0, step): the smallest toi of all candidates. Without any contact it is t_max, and nothing
+    /// touches in [0, t_max] either. A toi is a lower bound, so the step is safe as it is; scale it to keep a distance.
+    double step = 0.0;
+    PairKind kind = PairKind::vertex_face;                       ///< Of the pair that limits the step,
+    std::size_t pair = std::numeric_limits<std::size_t>::max();  ///< and its index among those; SIZE_MAX: none does.
+
+    [[nodiscard]] constexpr bool limited() const noexcept { return pair != std::numeric_limits<std::size_t>::max(); }
+};
+
+/// The largest step that vertex-face and edge-edge candidates together allow: the minimum of their dense answers, ties
+/// to vertex-face, then to the smaller index, on any number of threads. Pairs that cannot limit the step further are
+/// dropped early, across both kinds.
+///
+/// An invalid pair allows no step: unless a pair before it is in contact at time 0, the error is invalid_pair with that
+/// pair. Whenever there is an error of a pair, or an index out of range, `step.kind` tells which candidates `Status::pair`
+/// counts; the step is 0 then, as for every error.
+FASTCCD_API Status collision_free_step(const MovingMesh& mesh, std::span<const VertexFace> vertex_face,
+                                       std::span<const EdgeEdge> edge_edge, const Options& options,
+                                       CollisionFreeStep& step) noexcept;
+FASTCCD_API Status collision_free_step(const PairView& vertex_face, const PairView& edge_edge, const Options& options,
+                                       CollisionFreeStep& step) noexcept;
 
 }  // namespace fastccd

@@ -7,6 +7,7 @@
 #include <new>
 
 #include <fastccd/aligned_doubles.hpp>
+#include <fastccd/export.h>
 #include <fastccd/options.hpp>
 
 namespace fastccd {
@@ -93,8 +94,9 @@ public:
     MovingMesh() = default;
     /// Positions at t = 0 and t = 1 of the same vertices; faces n x 3 and edges n x 2, either may be empty.
     /// status() tells what is wrong, if anything: wrong_size for positions of different size or missing data,
-    /// index_out_of_range with the row at fault as `pair` for faces, then edges.
-    MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges);
+    /// index_out_of_range with the row at fault as `pair` for faces, then edges, out_of_memory. Calls that are given
+    /// a mesh with an error return that error. O(vertices + faces + edges), positions on all threads of the arena.
+    FASTCCD_API MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges) noexcept;
 
     [[nodiscard]] Status status() const noexcept { return status_; }
     [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }

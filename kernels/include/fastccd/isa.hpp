@@ -9,16 +9,16 @@
 namespace fastccd {
 
 /// Lower-case name: "scalar", "sse2", "avx2", "avx512", "neon", "automatic".
-[[nodiscard]] const char* name(Isa isa) noexcept;
+[[nodiscard]] FASTCCD_API const char* name(Isa isa) noexcept;
 /// The instruction set of that name; none if there is no such name.
-[[nodiscard]] std::optional<Isa> isa_from_name(std::string_view name) noexcept;
+[[nodiscard]] FASTCCD_API std::optional<Isa> isa_from_name(std::string_view name) noexcept;
 /// Pairs per batch; 0 for Isa::automatic.
-[[nodiscard]] int lanes(Isa isa) noexcept;
+[[nodiscard]] FASTCCD_API int lanes(Isa isa) noexcept;
 /// True if the kernels of that instruction set are part of this build.
-[[nodiscard]] bool isa_built(Isa isa) noexcept;
+[[nodiscard]] FASTCCD_API bool isa_built(Isa isa) noexcept;
 /// True if isa_built and both the processor and the operating system support it.
-[[nodiscard]] bool isa_available(Isa isa) noexcept;
+[[nodiscard]] FASTCCD_API bool isa_available(Isa isa) noexcept;
 /// The widest available instruction set.
-[[nodiscard]] Isa best_isa() noexcept;
+[[nodiscard]] FASTCCD_API Isa best_isa() noexcept;
 
 }  // namespace fastccd

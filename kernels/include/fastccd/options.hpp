@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <fastccd/export.h>
+
 namespace fastccd {
 
 /// What a pair consists of. Four points x0..x3 each move linearly over the step.
@@ -71,6 +73,8 @@ enum class Error : std::uint8_t {
     isa_unavailable,       ///< options.isa is not in this build or not on this machine.
     bad_isa_environment,   ///< FASTCCD_ISA names no instruction set, or one that is unavailable.
     index_out_of_range,    ///< an index of pair `pair` points outside its array.
+    invalid_pair,          ///< pair `pair` has a NaN or an infinity, in a call that cannot leave it out.
+    out_of_memory,         ///< an allocation failed, or the system refused a thread; outputs are unspecified.
 };
 
 /// Outcome of a call: `error` and, where one pair is at fault, its number and the index it holds.
@@ -83,6 +87,6 @@ struct Status {
 };
 
 /// A sentence for people; static storage.
-[[nodiscard]] const char* message(Error error) noexcept;
+[[nodiscard]] FASTCCD_API const char* message(Error error) noexcept;
 
 }  // namespace fastccd

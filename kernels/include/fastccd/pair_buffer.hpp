@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <span>
 
 #include <fastccd/aligned_doubles.hpp>
@@ -12,15 +13,18 @@ namespace fastccd {
 
 /// `size` pairs in 64-byte aligned blocks [24 coordinates][8 lanes] of double, 192 bytes a
 /// pair. Starts as all zeros; the lanes that pad the last block stay zero and are ignored.
+/// Like std::vector, its constructor throws std::bad_alloc, in the caller's own code.
 class PairBuffer {
 public:
     PairBuffer() = default;
 
     explicit PairBuffer(std::size_t size) : size_{size}
     {
+        if (size > std::numeric_limits<std::size_t>::max() / (2 * pair_coordinates * sizeof(double))) throw std::bad_alloc{};
         const std::size_t count = block_count() * block_coordinates;
         if (count == 0) return;
         data_ = allocate_aligned(count);
+        if (data_ == nullptr) throw std::bad_alloc{};
         std::memset(data_.get(), 0, count * sizeof(double));
     }
 

@@ -1,0 +1,34 @@
+// One pair at a time: to try things out, for a debugger, and for code that is written around one pair.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+
+#include <fastccd/export.h>
+#include <fastccd/options.hpp>
+
+namespace fastccd {
+
+/// x y z.
+using Point = std::array<double, 3>;
+
+struct PairToi {
+    /// As in the dense answer: lower bound of the first time of contact in [0, t_max]; +infinity: certainly apart; NaN: a
+    /// coordinate is NaN or infinite, or there is an error.
+    double toi = std::numeric_limits<double>::quiet_NaN();
+    bool proven = false;  ///< See Contact::proven.
+    Status status;        ///< bad_tolerance, bad_t_max, exact_unavailable.
+};
+
+/// Four points at t = 0, `x0`, and at t = 1, `x1`; the first is the vertex, the others are the face (paper, section 4).
+/// The same bits as in a batch. Runs the certified search in the caller's thread, whatever options.isa: microseconds,
+/// without allocation (but for Options::exact); at most 4,096 intervals.
+[[nodiscard]] FASTCCD_API PairToi vertex_face_toi(std::span<const Point, 4> x0, std::span<const Point, 4> x1,
+                                                  const Options& options = {}) noexcept;
+
+/// The same for two edges, of which the first two points are one (paper, section 5).
+[[nodiscard]] FASTCCD_API PairToi edge_edge_toi(std::span<const Point, 4> x0, std::span<const Point, 4> x1,
+                                                const Options& options = {}) noexcept;
+
+}  // namespace fastccd

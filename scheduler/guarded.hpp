@@ -1,0 +1,20 @@
+// Nothing is thrown across the public interface.
+#pragma once
+
+#include <fastccd/options.hpp>
+
+namespace fastccd {
+
+/// What the call returns. All that can be thrown below the entry points is for want of something: std::bad_alloc,
+/// std::length_error of a vector, and what oneTBB throws if the system refuses it memory or a thread.
+template <class Call>
+Status guarded(const Call& call) noexcept
+{
+    try {
+        return call();
+    } catch (...) {
+        return {Error::out_of_memory};
+    }
+}
+
+}  // namespace fastccd

@@ -1,0 +1,152 @@
+// Nothing is thrown across the interface: want of memory is an error like others. And a cancelled task group of the
+// caller leaves no pair without an answer.
+#include <gtest/gtest.h>
+
+#include <sys/resource.h>
+
+#include <tbb/task_group.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#include "allocation_count.hpp"
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+/// While it lives, allocations of at least so many bytes fail.
+struct Refusal {
+    explicit Refusal(std::size_t bytes) { refuse_allocations_from(bytes); }
+    ~Refusal() { refuse_allocations_from(SIZE_MAX); }
+    Refusal(const Refusal&) = delete;
+    Refusal& operator=(const Refusal&) = delete;
+};
+
+// What the interface promises at compile time.
+static_assert(noexcept(time_of_impact(PairKind{}, PairView{}, Options{}, std::span<double>{})));
+static_assert(noexcept(find_contacts(PairKind{}, PairView{}, Options{}, std::declval<std::vector<Contact>&>())));
+static_assert(noexcept(earliest_contact(PairKind{}, PairView{}, Options{}, std::declval<Contact&>())));
+static_assert(noexcept(collision_free_step(PairView{}, PairView{}, Options{}, std::declval<CollisionFreeStep&>())));
+static_assert(std::is_nothrow_constructible_v<MovingMesh, PositionView, PositionView, IndexView, IndexView>);
+static_assert(std::is_nothrow_move_constructible_v<MovingMesh>);
+
+constexpr std::size_t most_pairs = 5000;
+
+struct Pairs {
+    std::vector<oracle::Pair> list;
+    PairView view;
+    std::vector<double> toi;
+
+    explicit Pairs(std::size_t size) : toi(size)
+    {
+        generate("uniform", oracle::Kind::vertex_face, 55, size, list);
+        view = interleaved(list);
+    }
+};
+
+/// For a process of its own: from here on the system refuses memory. Then 0 if every call says so.
+[[noreturn]] void exit_after_calls_without_memory()
+{
+    Pairs pairs{1000};
+    Contact earliest{};
+    CollisionFreeStep step{0.5};
+    const rlimit nothing_more{1, 1};
+    setrlimit(RLIMIT_AS, &nothing_more);
+    const bool named = time_of_impact(PairKind::vertex_face, pairs.view, {}, pairs.toi).error == Error::out_of_memory &&
+                       earliest_contact(PairKind::vertex_face, pairs.view, {}, earliest).error == Error::out_of_memory &&
+                       collision_free_step(pairs.view, pairs.view, {}, step).error == Error::out_of_memory && step.step == 0.0;
+    std::_Exit(named ? 0 : 1);
+}
+
+TEST(OutOfMemoryDeathTest, OfTheSystemIsAnErrorOfEveryCall)
+{
+    if (!refuses_every_allocation()) GTEST_SKIP() << "NOT TESTED: a sanitizer needs memory of its own; nothing was checked here";
+    GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process that has run nothing of the library before
+    EXPECT_EXIT(exit_after_calls_without_memory(), ::testing::ExitedWithCode(0), "");
+}
+
+TEST(OutOfMemory, InATaskIsAnError)
+{
+    Pairs pairs{most_pairs};
+    std::vector<Contact> contacts{{1, 0.5}};
+    std::vector<std::size_t> invalid{3};
+    Status status;
+    {
+        const Refusal refusal{1000};  // what a worker's own list of contacts grows to
+        status = find_contacts(PairKind::vertex_face, pairs.view, {}, contacts, &invalid);
+    }
+    EXPECT_EQ(status.error, Error::out_of_memory);
+    EXPECT_EQ(contacts.size(), 1u);
+    EXPECT_EQ(invalid.size(), 1u);
+    EXPECT_TRUE(find_contacts(PairKind::vertex_face, pairs.view, {}, contacts, &invalid).ok());
+}
+
+TEST(OutOfMemory, OfTheCallersListsLeavesThemAsTheyWere)
+{
+    Pairs pairs{most_pairs};
+    for (std::size_t i = 0; i < pairs.list.size(); i += 2) pairs.list[i][0][0] = std::numeric_limits<double>::infinity();
+    // More invalid pairs than contacts: the list of those is the allocation that fails.
+    std::vector<Contact> contacts;
+    std::vector<std::size_t> invalid{3};
+    contacts.reserve(most_pairs);
+    Status status;
+    {
+        const Refusal refusal{pairs.list.size() / 2 * sizeof(std::size_t)};
+        status = find_contacts(PairKind::vertex_face, pairs.view, {}, contacts, &invalid);
+    }
+    EXPECT_EQ(status.error, Error::out_of_memory);
+    EXPECT_TRUE(contacts.empty());
+    EXPECT_EQ(invalid.size(), 1u);
+}
+
+TEST(OutOfMemory, OfAMeshAndABuffer)
+{
+    std::vector<double> positions(30000, 0.5);
+    const PositionView view = PositionView::rows(positions.data(), positions.size() / 3);
+    Status status;
+    bool thrown = false;
+    {
+        const Refusal refusal{20000};
+        status = MovingMesh{view, view, {}, {}}.status();
+        try {
+            PairBuffer buffer{1000};
+        } catch (const std::bad_alloc&) {
+            thrown = true;
+        }
+    }
+    EXPECT_EQ(status.error, Error::out_of_memory);
+    EXPECT_TRUE(thrown);
+    EXPECT_THROW(PairBuffer{SIZE_MAX}, std::bad_alloc);
+    EXPECT_THROW(PairBuffer{SIZE_MAX / 192}, std::bad_alloc);
+}
+
+TEST(Cancellation, OfTheCallersTaskGroupLeavesNothingOut)
+{
+    Pairs pairs{most_pairs};
+    const Answer expected = answer(oracle::Kind::vertex_face, pairs.view, {});
+    std::vector<double> positions(60000, 0.5);
+    const PositionView view = PositionView::rows(positions.data(), positions.size() / 3);
+    const std::vector<VertexFace> out_of_range(200000, {0, 0});
+    Status indices;
+    double last_position = 0.0;
+    tbb::task_group group;
+    group.run_and_wait([&] {
+        group.cancel();
+        (void)time_of_impact(PairKind::vertex_face, pairs.view, {}, pairs.toi);
+        const MovingMesh mesh{view, view, {}, {}};
+        last_position = mesh.records()[8 * mesh.vertex_count() - 3];
+        indices = find_contacts(mesh, out_of_range, {}, *std::make_unique<std::vector<Contact>>());
+    });
+    EXPECT_EQ(pairs.toi, expected.toi);
+    EXPECT_EQ(last_position, 0.5);
+    EXPECT_EQ(indices.error, Error::index_out_of_range);
+}
+
+}  // namespace
+}  // namespace fastccd::testing
