@@ -24,6 +24,8 @@ extern const bench::StageTable stage_table;
 namespace sse2_stages {
 extern const bench::StageTable stage_table;
 }
+#endif
+#if defined(FASTCCD_HAVE_AVX)
 namespace avx2_stages {
 extern const bench::StageTable stage_table;
 }
@@ -49,6 +51,8 @@ const StageTable* const tables[] = {
     &scalar_stages::stage_table,
 #if defined(FASTCCD_HAVE_X86)
     &sse2_stages::stage_table,
+#endif
+#if defined(FASTCCD_HAVE_AVX)
     &avx2_stages::stage_table,
     &avx512_stages::stage_table,
 #endif

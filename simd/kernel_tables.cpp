@@ -12,6 +12,8 @@ extern const KernelTable table;
 namespace sse2_lanes {
 extern const KernelTable table;
 }
+#endif
+#if defined(FASTCCD_HAVE_AVX)
 namespace avx2_lanes {
 extern const KernelTable table;
 }
@@ -31,6 +33,8 @@ const KernelTable* kernel_table(Isa isa) noexcept
         case Isa::scalar: return &scalar_lanes::table;
 #if defined(FASTCCD_HAVE_X86)
         case Isa::sse2: return &sse2_lanes::table;
+#endif
+#if defined(FASTCCD_HAVE_AVX)
         case Isa::avx2: return &avx2_lanes::table;
         case Isa::avx512: return &avx512_lanes::table;
 #endif

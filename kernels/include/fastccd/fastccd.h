@@ -1,0 +1,159 @@
+/* fastccd for C, and for what calls C: Python's ctypes, Julia, Rust, C#. Plain arrays and structs; C99.
+ *
+ * Everything means what it means in <fastccd/fastccd.hpp>: nothing missed, never late, the same bits on every instruction
+ * set and thread count. Arrays are contiguous, in C order ("rows" below), and belong to the caller; nothing is kept
+ * after a call. All functions may be called from any number of threads at once, and print nothing.
+ *
+ * Every function that can fail returns an error, FASTCCD_OK if there is none; fastccd_message() says it in words. Pointers
+ * marked "or NULL" may be NULL.
+ *
+ * Structs begin with `size`, sizeof of the struct as the caller knows it. Later versions only append fields, for which 0 is
+ * the default, so that programs and libraries of different age understand each other.
+ */
+#ifndef FASTCCD_H
+#define FASTCCD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <fastccd/export.h>
+#include <fastccd/version.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum fastccd_error {
+    FASTCCD_OK = 0,
+    FASTCCD_BAD_TOLERANCE = 1,       /* tolerance is not a positive finite number */
+    FASTCCD_BAD_T_MAX = 2,           /* t_max is not in (0, 1] */
+    FASTCCD_WRONG_SIZE = 3,          /* an array is NULL but should not be empty */
+    FASTCCD_EXACT_UNAVAILABLE = 4,   /* `exact` in a build without GMP */
+    FASTCCD_ISA_UNAVAILABLE = 5,     /* the instruction set is not in this build or not on this machine */
+    FASTCCD_BAD_ISA_ENVIRONMENT = 6, /* FASTCCD_ISA names no instruction set, or one that is unavailable */
+    FASTCCD_INDEX_OUT_OF_RANGE = 7,  /* see fastccd_fault */
+    FASTCCD_INVALID_PAIR = 8,        /* a NaN or an infinity in a pair, in a call that cannot leave it out; see fastccd_fault */
+    FASTCCD_OUT_OF_MEMORY = 9,       /* or the system refused a thread; outputs are unspecified */
+    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, or a struct whose size is not set */
+};
+
+enum fastccd_kind {
+    FASTCCD_VERTEX_FACE = 0, /* points x0 | x1 x2 x3; indices: vertex, face */
+    FASTCCD_EDGE_EDGE = 1    /* points x0 x1 | x2 x3; indices: edge, edge */
+};
+
+enum fastccd_isa {
+    FASTCCD_ISA_AUTOMATIC = 0, /* the widest available; honours the environment variable FASTCCD_ISA */
+    FASTCCD_ISA_SCALAR = 1,
+    FASTCCD_ISA_SSE2 = 2,
+    FASTCCD_ISA_AVX2 = 3,
+    FASTCCD_ISA_AVX512 = 4,
+    FASTCCD_ISA_NEON = 5
+};
+
+/* Fill it with fastccd_options_init(), then change what you want. NULL in place of it: the defaults. */
+typedef struct fastccd_options {
+    size_t size;
+    double tolerance;  /* E_tol, in units of the step: 1e-9 */
+    double t_max;      /* contact is searched in [0, t_max], 0 < t_max <= 1: 1 */
+    int32_t isa;       /* enum fastccd_isa: automatic */
+    int32_t reference; /* not 0: the certified search alone, slower, the same bits */
+    int32_t exact;     /* not 0: settle possible contacts by rational arithmetic */
+    int32_t reserved;  /* 0 */
+} fastccd_options;
+
+/* A mesh that moves linearly over the step. */
+typedef struct fastccd_mesh {
+    size_t size;
+    size_t vertex_count;
+    const double* start; /* vertex_count x 3: positions at t = 0, */
+    const double* end;   /* and at t = 1 */
+    size_t face_count;
+    const int32_t* faces; /* face_count x 3: indices of vertices */
+    size_t edge_count;
+    const int32_t* edges; /* edge_count x 2 */
+} fastccd_mesh;
+
+typedef struct fastccd_contact {
+    size_t pair;    /* index of the pair in the input */
+    double toi;     /* lower bound of its first time of contact */
+    int32_t proven; /* 1: there is contact, certainly; 0: contact is not excluded, to within rounding */
+    int32_t reserved;
+} fastccd_contact;
+
+/* Set `size` before the call. */
+typedef struct fastccd_summary {
+    size_t size;
+    size_t pairs, contacts, proven, odd, even, invalid, scalar_pairs;
+    size_t earliest_pair; /* SIZE_MAX: none */
+    double earliest_toi;  /* INFINITY: none */
+    int32_t isa;          /* kernels that ran */
+    int32_t reserved;
+} fastccd_summary;
+
+/* Set `size` before the call. */
+typedef struct fastccd_step {
+    size_t size;
+    double step;  /* nothing touches in [0, step); t_max if there is no contact; 0 on every error */
+    size_t pair;  /* the pair that limits the step; SIZE_MAX: none */
+    int32_t kind; /* enum fastccd_kind: which candidates `pair`, here or in the fault, counts */
+    int32_t reserved;
+} fastccd_step;
+
+/* What is at fault. Written on FASTCCD_INDEX_OUT_OF_RANGE and FASTCCD_INVALID_PAIR. */
+typedef struct fastccd_fault {
+    size_t pair;   /* the pair; for an index in `faces` or `edges`, the row */
+    int64_t index; /* the index it holds */
+} fastccd_fault;
+
+/* Version of the library that runs, such as "0.1.0"; that of the headers is FASTCCD_VERSION. */
+FASTCCD_API const char* fastccd_version(void);
+/* A sentence about an error; static storage. */
+FASTCCD_API const char* fastccd_message(int error);
+
+/* Lower-case name, "unknown" for a number that is no instruction set; static storage. */
+FASTCCD_API const char* fastccd_isa_name(int isa);
+/* Pairs per batch; 0 for automatic and unknown. */
+FASTCCD_API int fastccd_isa_lanes(int isa);
+/* 1 if it is part of this build and supported by this machine. */
+FASTCCD_API int fastccd_isa_available(int isa);
+/* The widest available. */
+FASTCCD_API int fastccd_best_isa(void);
+
+/* The defaults. `size`: sizeof(fastccd_options). */
+FASTCCD_API void fastccd_options_init(fastccd_options* options, size_t size);
+
+/* One pair: four points at t = 0 and at t = 1, x y z each. *toi: lower bound of the first time of contact in [0, t_max];
+ * INFINITY: certainly apart; NAN: a coordinate is NaN or infinite. No allocation, no threads. `options`: or NULL. */
+FASTCCD_API int fastccd_vertex_face_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
+FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
+
+/* Packed pairs: `pairs` is count x 8 x 3, the points x0..x3 at t = 0, then at t = 1.
+ * toi: count values as above. roots, or NULL: count numbers of contact roots (odd: through, even: grazing; 0: none, or
+ * not countable). `options`, `summary`: or NULL. O(count). */
+FASTCCD_API int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options,
+                                             double* toi, uint8_t* roots, fastccd_summary* summary);
+/* The pairs in contact, in pair order: the first `capacity` of them into `contacts`, their number into *found (which may
+ * be more). `contacts` may be NULL if capacity is 0. */
+FASTCCD_API int fastccd_pairs_find_contacts(int kind, const double* pairs, size_t count, const fastccd_options* options,
+                                            fastccd_contact* contacts, size_t capacity, size_t* found, fastccd_summary* summary);
+
+/* Pairs of a mesh: `pairs` is count x 2 indices. Indices are checked before any work. Each call copies the positions,
+ * 64 bytes a vertex. `fault`: or NULL. */
+FASTCCD_API int fastccd_mesh_time_of_impact(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count,
+                                            const fastccd_options* options, double* toi, uint8_t* roots,
+                                            fastccd_summary* summary, fastccd_fault* fault);
+FASTCCD_API int fastccd_mesh_find_contacts(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count,
+                                           const fastccd_options* options, fastccd_contact* contacts, size_t capacity,
+                                           size_t* found, fastccd_summary* summary, fastccd_fault* fault);
+/* The largest step that all candidates together allow: the smallest toi, ties to vertex-face, then to the smaller index.
+ * A pair with a NaN or an infinity allows none: FASTCCD_INVALID_PAIR. */
+FASTCCD_API int fastccd_mesh_collision_free_step(const fastccd_mesh* mesh, const int32_t* vertex_face, size_t vertex_face_count,
+                                                 const int32_t* edge_edge, size_t edge_edge_count,
+                                                 const fastccd_options* options, fastccd_step* step, fastccd_fault* fault);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,284 @@
+// The C interface: arguments checked and put into the types of the C++ one.
+#include <fastccd/fastccd.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include <fastccd/fastccd.hpp>
+#include <guarded.hpp>
+
+namespace fastccd {
+
+namespace {
+
+static_assert(FASTCCD_BAD_TOLERANCE == static_cast<int>(Error::bad_tolerance) && FASTCCD_BAD_T_MAX == static_cast<int>(Error::bad_t_max) &&
+              FASTCCD_WRONG_SIZE == static_cast<int>(Error::wrong_size) &&
+              FASTCCD_EXACT_UNAVAILABLE == static_cast<int>(Error::exact_unavailable) &&
+              FASTCCD_ISA_UNAVAILABLE == static_cast<int>(Error::isa_unavailable) &&
+              FASTCCD_BAD_ISA_ENVIRONMENT == static_cast<int>(Error::bad_isa_environment) &&
+              FASTCCD_INDEX_OUT_OF_RANGE == static_cast<int>(Error::index_out_of_range) &&
+              FASTCCD_INVALID_PAIR == static_cast<int>(Error::invalid_pair) && FASTCCD_OUT_OF_MEMORY == static_cast<int>(Error::out_of_memory));
+static_assert(FASTCCD_VERTEX_FACE == static_cast<int>(PairKind::vertex_face) && FASTCCD_EDGE_EDGE == static_cast<int>(PairKind::edge_edge));
+static_assert(FASTCCD_ISA_AUTOMATIC == static_cast<int>(Isa::automatic) && FASTCCD_ISA_SCALAR == static_cast<int>(Isa::scalar) &&
+              FASTCCD_ISA_SSE2 == static_cast<int>(Isa::sse2) && FASTCCD_ISA_AVX2 == static_cast<int>(Isa::avx2) &&
+              FASTCCD_ISA_AVX512 == static_cast<int>(Isa::avx512) && FASTCCD_ISA_NEON == static_cast<int>(Isa::neon));
+
+/// Sizes of the structs in the first version: none was ever smaller.
+constexpr std::size_t first_options = 40, first_mesh = 64, first_summary = 88, first_step = 32;
+static_assert(sizeof(std::size_t) != 8 || (sizeof(fastccd_options) >= first_options && sizeof(fastccd_mesh) >= first_mesh &&
+                                           sizeof(fastccd_summary) >= first_summary && sizeof(fastccd_step) >= first_step));
+
+bool is_kind(int kind) { return kind == FASTCCD_VERTEX_FACE || kind == FASTCCD_EDGE_EDGE; }
+bool is_isa(int isa) { return isa >= FASTCCD_ISA_AUTOMATIC && isa <= FASTCCD_ISA_NEON; }
+
+/// Copies a struct of the caller into `known`; false if its size is not set, or if fields that this version does not know
+/// are not 0.
+template <class Struct>
+bool read_struct(const Struct& given, std::size_t least, Struct& known)
+{
+    const std::size_t size = given.size;
+    if (size < std::min(least, sizeof(Struct))) return false;
+    std::memcpy(&known, &given, std::min(size, sizeof(Struct)));
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
+    return size <= sizeof(Struct) || std::all_of(bytes + sizeof(Struct), bytes + size, [](unsigned char byte) { return byte == 0; });
+}
+
+/// Writes what the caller's struct has room for, and zeros into fields this version does not know.
+template <class Struct>
+void write_struct(Struct known, Struct& given)
+{
+    const std::size_t size = known.size = given.size;
+    std::memcpy(&given, &known, std::min(size, sizeof(Struct)));
+    if (size > sizeof(Struct)) std::memset(reinterpret_cast<unsigned char*>(&given) + sizeof(Struct), 0, size - sizeof(Struct));
+}
+
+template <class Struct>
+bool has_size(const Struct* given, std::size_t least)
+{
+    return given == nullptr || given->size >= std::min(least, sizeof(Struct));
+}
+
+fastccd_options to_c(const Options& options)
+{
+    return {sizeof(fastccd_options),        options.tolerance, options.t_max, static_cast<std::int32_t>(options.isa), options.reference ? 1 : 0,
+            options.exact ? 1 : 0, 0};
+}
+
+/// Defaults for a null pointer.
+int to_cpp(const fastccd_options* given, Options& options)
+{
+    if (given == nullptr) return FASTCCD_OK;
+    fastccd_options known = to_c({});
+    if (!read_struct(*given, first_options, known)) return FASTCCD_BAD_ARGUMENT;
+    if (!is_isa(known.isa)) return FASTCCD_ISA_UNAVAILABLE;
+    options.tolerance = known.tolerance;
+    options.t_max = known.t_max;
+    options.isa = static_cast<Isa>(known.isa);
+    options.reference = known.reference != 0;
+    options.exact = known.exact != 0;
+    return FASTCCD_OK;
+}
+
+int report(const Status& status, fastccd_fault* fault)
+{
+    if (fault != nullptr && (status.error == Error::index_out_of_range || status.error == Error::invalid_pair))
+        *fault = {status.pair, status.index};
+    return static_cast<int>(status.error);
+}
+
+void report(const Summary& from, fastccd_summary* to)
+{
+    if (to == nullptr) return;
+    write_struct({0, from.pairs, from.contacts, from.proven, from.odd, from.even, from.invalid, from.scalar_pairs, from.earliest.pair,
+                  from.earliest.toi, static_cast<std::int32_t>(from.isa), 0},
+                 *to);
+}
+
+/// The arguments that all calls for many pairs share.
+struct Request {
+    Options options;
+    fastccd_summary* summary;
+    fastccd_fault* fault;
+
+    int check(int kind, const void* pairs, std::size_t count, const fastccd_options* given)
+    {
+        if (!is_kind(kind) || !has_size(summary, first_summary)) return FASTCCD_BAD_ARGUMENT;
+        if (pairs == nullptr && count > 0) return FASTCCD_WRONG_SIZE;
+        return to_cpp(given, options);
+    }
+};
+
+/// `call(options, toi, roots, summary)`, a dense answer.
+template <class Call>
+int dense(const Request& request, std::size_t count, double* toi, std::uint8_t* roots, const Call& call)
+{
+    if (toi == nullptr && count > 0) return FASTCCD_WRONG_SIZE;
+    Summary summary;
+    const Status status = call(request.options, std::span{toi, count}, &summary, std::span{roots, roots != nullptr ? count : 0});
+    if (status.ok()) report(summary, request.summary);
+    return report(status, request.fault);
+}
+
+/// `call(options, contacts, nullptr, summary)`, a compact answer.
+template <class Call>
+int compact(const Request& request, fastccd_contact* contacts, std::size_t capacity, std::size_t* found, const Call& call)
+{
+    if (found == nullptr || (contacts == nullptr && capacity > 0)) return FASTCCD_BAD_ARGUMENT;
+    std::vector<Contact> list;
+    Summary summary;
+    const Status status = call(request.options, list, nullptr, &summary);
+    if (status.ok()) {
+        *found = list.size();
+        const auto written = list.begin() + static_cast<std::ptrdiff_t>(std::min(capacity, list.size()));
+        std::transform(list.begin(), written, contacts, [](const Contact& c) { return fastccd_contact{c.pair, c.toi, c.proven ? 1 : 0, 0}; });
+        report(summary, request.summary);
+    }
+    return report(status, request.fault);
+}
+
+/// The mesh of a call; false: the struct cannot be read.
+bool to_cpp(const fastccd_mesh* given, MovingMesh& mesh)
+{
+    fastccd_mesh known{};
+    if (given == nullptr || !read_struct(*given, first_mesh, known)) return false;
+    const auto missing = [&](const auto* data, std::size_t rows) { return data == nullptr && rows > 0; };
+    if (missing(known.start, known.vertex_count) || missing(known.end, known.vertex_count)) return true;  // as a mesh without data: wrong_size
+    const auto positions = [&](const double* data) { return data != nullptr ? PositionView::rows(data, known.vertex_count) : PositionView{}; };
+    mesh = {positions(known.start), positions(known.end), IndexView::rows(known.faces, known.face_count, 3),
+            IndexView::rows(known.edges, known.edge_count, 2)};
+    return true;
+}
+
+// Two int32 a pair, read as such.
+std::span<const VertexFace> vertex_face_pairs(const std::int32_t* pairs, std::size_t count)
+{
+    return {reinterpret_cast<const VertexFace*>(pairs), count};
+}
+std::span<const EdgeEdge> edge_edge_pairs(const std::int32_t* pairs, std::size_t count)
+{
+    return {reinterpret_cast<const EdgeEdge*>(pairs), count};
+}
+
+int single(PairKind kind, const double* x0, const double* x1, const fastccd_options* given, double* toi)
+{
+    if (x0 == nullptr || x1 == nullptr || toi == nullptr) return FASTCCD_BAD_ARGUMENT;
+    Options options;
+    if (const int error = to_cpp(given, options); error != FASTCCD_OK) return error;
+    Point start[4], end[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+        std::copy_n(x0 + 3 * i, 3, start[i].begin());
+        std::copy_n(x1 + 3 * i, 3, end[i].begin());
+    }
+    const PairToi found = kind == PairKind::vertex_face ? vertex_face_toi(start, end, options) : edge_edge_toi(start, end, options);
+    *toi = found.toi;
+    return static_cast<int>(found.status.error);
+}
+
+}  // namespace
+
+}  // namespace fastccd
+
+using namespace fastccd;
+
+extern "C" {
+
+const char* fastccd_version(void) { return FASTCCD_VERSION; }
+
+const char* fastccd_message(int error)
+{
+    if (error == FASTCCD_BAD_ARGUMENT) return "a pointer is null, a kind is unknown, or the size of a struct is not set";
+    if (error < FASTCCD_OK || error > FASTCCD_OUT_OF_MEMORY) return "unknown error";
+    return message(static_cast<Error>(error));
+}
+
+const char* fastccd_isa_name(int isa) { return is_isa(isa) ? name(static_cast<Isa>(isa)) : "unknown"; }
+int fastccd_isa_lanes(int isa) { return is_isa(isa) ? lanes(static_cast<Isa>(isa)) : 0; }
+int fastccd_isa_available(int isa) { return is_isa(isa) && isa_available(static_cast<Isa>(isa)) ? 1 : 0; }
+int fastccd_best_isa(void) { return static_cast<int>(best_isa()); }
+
+void fastccd_options_init(fastccd_options* options, size_t size)
+{
+    if (options == nullptr || size < sizeof options->size) return;
+    options->size = size;
+    write_struct(to_c({}), *options);
+}
+
+int fastccd_vertex_face_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi)
+{
+    return single(PairKind::vertex_face, x0, x1, options, toi);
+}
+
+int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi)
+{
+    return single(PairKind::edge_edge, x0, x1, options, toi);
+}
+
+int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options, double* toi,
+                                 uint8_t* roots, fastccd_summary* summary)
+{
+    Request request{{}, summary, nullptr};
+    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
+    return dense(request, count, toi, roots, [&](const auto&... outputs) {
+        return time_of_impact(static_cast<PairKind>(kind), PairView::interleaved(pairs, count), outputs...);
+    });
+}
+
+int fastccd_pairs_find_contacts(int kind, const double* pairs, size_t count, const fastccd_options* options, fastccd_contact* contacts,
+                                size_t capacity, size_t* found, fastccd_summary* summary)
+{
+    Request request{{}, summary, nullptr};
+    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
+    return compact(request, contacts, capacity, found, [&](const Options& chosen, auto&&... outputs) {
+        return find_contacts(static_cast<PairKind>(kind), PairView::interleaved(pairs, count), chosen, outputs...);
+    });
+}
+
+int fastccd_mesh_time_of_impact(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count, const fastccd_options* options,
+                                double* toi, uint8_t* roots, fastccd_summary* summary, fastccd_fault* fault)
+{
+    Request request{{}, summary, fault};
+    MovingMesh moving;
+    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
+    if (!to_cpp(mesh, moving)) return FASTCCD_BAD_ARGUMENT;
+    return dense(request, count, toi, roots, [&](const auto&... outputs) {
+        return kind == FASTCCD_VERTEX_FACE ? time_of_impact(moving, vertex_face_pairs(pairs, count), outputs...)
+                                           : time_of_impact(moving, edge_edge_pairs(pairs, count), outputs...);
+    });
+}
+
+int fastccd_mesh_find_contacts(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count, const fastccd_options* options,
+                               fastccd_contact* contacts, size_t capacity, size_t* found, fastccd_summary* summary, fastccd_fault* fault)
+{
+    Request request{{}, summary, fault};
+    MovingMesh moving;
+    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
+    if (!to_cpp(mesh, moving)) return FASTCCD_BAD_ARGUMENT;
+    return compact(request, contacts, capacity, found, [&](const Options& chosen, auto&&... outputs) {
+        return kind == FASTCCD_VERTEX_FACE ? find_contacts(moving, vertex_face_pairs(pairs, count), chosen, outputs...)
+                                           : find_contacts(moving, edge_edge_pairs(pairs, count), chosen, outputs...);
+    });
+}
+
+int fastccd_mesh_collision_free_step(const fastccd_mesh* mesh, const int32_t* vertex_face, size_t vertex_face_count,
+                                     const int32_t* edge_edge, size_t edge_edge_count, const fastccd_options* options,
+                                     fastccd_step* step, fastccd_fault* fault)
+{
+    if (step == nullptr || !has_size(step, first_step)) return FASTCCD_BAD_ARGUMENT;
+    CollisionFreeStep found;
+    const auto finish = [&](int error) {
+        write_struct({0, found.step, found.pair, static_cast<std::int32_t>(found.kind), 0}, *step);
+        return error;
+    };
+    if ((vertex_face == nullptr && vertex_face_count > 0) || (edge_edge == nullptr && edge_edge_count > 0)) return finish(FASTCCD_WRONG_SIZE);
+    Options chosen;
+    if (const int error = to_cpp(options, chosen); error != FASTCCD_OK) return finish(error);
+    MovingMesh moving;
+    if (!to_cpp(mesh, moving)) return finish(FASTCCD_BAD_ARGUMENT);
+    const Status status = collision_free_step(moving, vertex_face_pairs(vertex_face, vertex_face_count),
+                                              edge_edge_pairs(edge_edge, edge_edge_count), chosen, found);
+    return finish(report(status, fault));
+}
+
+}  // extern "C"

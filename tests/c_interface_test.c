@@ -1,0 +1,193 @@
+/* The C interface, compiled as C99: answers, errors, and structs of other sizes than this version's. */
+#include <fastccd/fastccd.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static int failures = 0;
+#define EXPECT(condition) \
+    do { \
+        if (!(condition)) { \
+            fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #condition); \
+            ++failures; \
+        } \
+    } while (0)
+
+/* A vertex falls onto a face for half of the step; an edge of that face is met by another edge after a quarter. */
+static const double start[] = {0, 0, 1, -1, -1, 0, 1, -1, 0, 0, 1, 0, -2, -1, 0.5, 2, -1, 0.5};
+static const double end[] = {0, 0, -1, -1, -1, 0, 1, -1, 0, 0, 1, 0, -2, -1, -1.5, 2, -1, -1.5};
+static const int32_t faces[] = {1, 2, 3};
+static const int32_t edges[] = {2, 3, 4, 5};
+static const int32_t vertex_face[] = {0, 0};
+static const int32_t edge_edge[] = {0, 1};
+
+static int near(double toi, double time) { return toi <= time && toi >= time - 1e-9; }
+
+static fastccd_mesh make_mesh(void)
+{
+    fastccd_mesh mesh;
+    mesh.size = sizeof mesh;
+    mesh.vertex_count = 6;
+    mesh.start = start;
+    mesh.end = end;
+    mesh.face_count = 1;
+    mesh.faces = faces;
+    mesh.edge_count = 2;
+    mesh.edges = edges;
+    return mesh;
+}
+
+static void test_queries(void)
+{
+    fastccd_options options;
+    EXPECT(strcmp(fastccd_version(), FASTCCD_VERSION) == 0);
+    EXPECT(strcmp(fastccd_isa_name(FASTCCD_ISA_AVX512), "avx512") == 0);
+    EXPECT(strcmp(fastccd_isa_name(99), "unknown") == 0);
+    EXPECT(fastccd_isa_lanes(FASTCCD_ISA_SCALAR) == 1 && fastccd_isa_lanes(-1) == 0);
+    EXPECT(fastccd_isa_available(FASTCCD_ISA_SCALAR) == 1 && fastccd_isa_available(99) == 0);
+    EXPECT(fastccd_isa_available(fastccd_best_isa()) == 1);
+    EXPECT(strcmp(fastccd_message(FASTCCD_OK), "no error") == 0);
+    EXPECT(strcmp(fastccd_message(FASTCCD_BAD_ARGUMENT), fastccd_message(FASTCCD_OUT_OF_MEMORY)) != 0);
+    EXPECT(strcmp(fastccd_message(-1), "unknown error") == 0 && strcmp(fastccd_message(50), "unknown error") == 0);
+    fastccd_options_init(&options, sizeof options);
+    EXPECT(options.tolerance == 1e-9 && options.t_max == 1.0 && options.isa == FASTCCD_ISA_AUTOMATIC);
+    EXPECT(options.reference == 0 && options.exact == 0 && options.reserved == 0);
+}
+
+static void test_single_pairs(void)
+{
+    double toi = 7.0;
+    double bad[12];
+    fastccd_options options;
+    EXPECT(fastccd_vertex_face_toi(start, end, NULL, &toi) == FASTCCD_OK && near(toi, 0.5));
+    fastccd_options_init(&options, sizeof options);
+    options.t_max = 0.25;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_OK && isinf(toi));
+    /* Points 2 3 4 5 are the two edges. */
+    EXPECT(fastccd_edge_edge_toi(start + 6, end + 6, NULL, &toi) == FASTCCD_OK && near(toi, 0.25));
+    options.t_max = 0.0;
+    EXPECT(fastccd_edge_edge_toi(start, end, &options, &toi) == FASTCCD_BAD_T_MAX && isnan(toi));
+    memcpy(bad, start, sizeof bad);
+    bad[4] = NAN;
+    EXPECT(fastccd_vertex_face_toi(bad, end, NULL, &toi) == FASTCCD_OK && isnan(toi));
+    EXPECT(fastccd_vertex_face_toi(NULL, end, NULL, &toi) == FASTCCD_BAD_ARGUMENT);
+}
+
+static void test_packed_pairs(void)
+{
+    double pairs[3][24];
+    double toi[3] = {7, 7, 7};
+    uint8_t roots[3] = {9, 9, 9};
+    fastccd_summary summary;
+    fastccd_contact contacts[2];
+    size_t found = 99;
+    int i;
+    for (i = 0; i < 3; ++i) {
+        memcpy(pairs[i], start, 12 * sizeof(double));
+        memcpy(pairs[i] + 12, end, 12 * sizeof(double));
+    }
+    pairs[1][0] += 10.0; /* far away, always */
+    pairs[1][12] += 10.0;
+    summary.size = sizeof summary;
+    EXPECT(fastccd_pairs_time_of_impact(FASTCCD_VERTEX_FACE, pairs[0], 3, NULL, toi, roots, &summary) == FASTCCD_OK);
+    EXPECT(near(toi[0], 0.5) && isinf(toi[1]) && toi[2] == toi[0]);
+    EXPECT(roots[0] == 1 && roots[1] == 0 && roots[2] == 1);
+    EXPECT(summary.size == sizeof summary && summary.pairs == 3 && summary.contacts == 2 && summary.proven == 2 && summary.odd == 2);
+    EXPECT(summary.earliest_pair == 0 && summary.earliest_toi == toi[0] && summary.isa == fastccd_best_isa());
+
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_VERTEX_FACE, pairs[0], 3, NULL, contacts, 2, &found, NULL) == FASTCCD_OK);
+    EXPECT(found == 2 && contacts[0].pair == 0 && contacts[1].pair == 2 && contacts[1].toi == toi[0] && contacts[1].proven == 1);
+    contacts[0].pair = contacts[1].pair = 77;
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_VERTEX_FACE, pairs[0], 3, NULL, contacts, 1, &found, NULL) == FASTCCD_OK);
+    EXPECT(found == 2 && contacts[0].pair == 0 && contacts[1].pair == 77);
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_VERTEX_FACE, NULL, 0, NULL, NULL, 0, &found, NULL) == FASTCCD_OK && found == 0);
+
+    EXPECT(fastccd_pairs_time_of_impact(2, pairs[0], 3, NULL, toi, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+    EXPECT(fastccd_pairs_time_of_impact(FASTCCD_EDGE_EDGE, NULL, 3, NULL, toi, NULL, NULL) == FASTCCD_WRONG_SIZE);
+    EXPECT(fastccd_pairs_time_of_impact(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, NULL, NULL, NULL) == FASTCCD_WRONG_SIZE);
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, NULL, 2, &found, NULL) == FASTCCD_BAD_ARGUMENT);
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, contacts, 2, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+}
+
+static void test_meshes(void)
+{
+    fastccd_mesh mesh = make_mesh();
+    const int32_t bad_pairs[] = {0, 1, 0, 2}; /* there are edges 0 and 1 */
+    const int32_t bad_faces[] = {1, 2, 6};
+    double toi = 7.0;
+    double moved[18];
+    fastccd_contact contact;
+    fastccd_fault fault = {77, 77};
+    fastccd_step step;
+    size_t found = 99;
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_OK);
+    EXPECT(near(toi, 0.5));
+    EXPECT(fastccd_mesh_find_contacts(&mesh, FASTCCD_EDGE_EDGE, edge_edge, 1, NULL, &contact, 1, &found, NULL, NULL) == FASTCCD_OK);
+    EXPECT(found == 1 && contact.pair == 0 && near(contact.toi, 0.25));
+
+    step.size = sizeof step;
+    EXPECT(fastccd_mesh_collision_free_step(&mesh, vertex_face, 1, edge_edge, 1, NULL, &step, NULL) == FASTCCD_OK);
+    EXPECT(step.size == sizeof step && near(step.step, 0.25) && step.kind == FASTCCD_EDGE_EDGE && step.pair == 0);
+    EXPECT(fastccd_mesh_collision_free_step(&mesh, NULL, 0, NULL, 0, NULL, &step, NULL) == FASTCCD_OK);
+    EXPECT(step.step == 1.0 && step.pair == (size_t)-1);
+
+    EXPECT(fastccd_mesh_collision_free_step(&mesh, vertex_face, 1, bad_pairs, 2, NULL, &step, &fault) == FASTCCD_INDEX_OUT_OF_RANGE);
+    EXPECT(step.step == 0.0 && step.kind == FASTCCD_EDGE_EDGE && fault.pair == 1 && fault.index == 2);
+    memcpy(moved, end, sizeof moved);
+    moved[17] = INFINITY;
+    mesh.end = moved;
+    EXPECT(fastccd_mesh_collision_free_step(&mesh, vertex_face, 1, edge_edge, 1, NULL, &step, &fault) == FASTCCD_INVALID_PAIR);
+    EXPECT(step.step == 0.0 && step.kind == FASTCCD_EDGE_EDGE && fault.pair == 0);
+    mesh = make_mesh();
+    mesh.faces = bad_faces;
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, &fault) == FASTCCD_INDEX_OUT_OF_RANGE);
+    EXPECT(fault.pair == 0 && fault.index == 6);
+    mesh = make_mesh();
+    mesh.start = NULL;
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_WRONG_SIZE);
+    EXPECT(fastccd_mesh_time_of_impact(NULL, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+}
+
+/* A program that was compiled with a later header, and one that forgot the size. */
+static void test_other_sizes(void)
+{
+    struct {
+        fastccd_options known;
+        double later;
+    } options;
+    struct {
+        fastccd_summary known;
+        double later;
+    } summary;
+    double toi;
+    fastccd_mesh mesh = make_mesh();
+    memset(&options, 0x55, sizeof options);
+    fastccd_options_init(&options.known, sizeof options);
+    EXPECT(options.known.size == sizeof options && options.known.tolerance == 1e-9 && options.later == 0.0);
+    EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_OK && near(toi, 0.5));
+    options.later = 1.0; /* asks for what this library cannot know */
+    EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_BAD_ARGUMENT);
+    options.known.size = 0;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_BAD_ARGUMENT);
+
+    summary.known.size = sizeof summary;
+    summary.later = 1.0;
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, &summary.known, NULL) == FASTCCD_OK);
+    EXPECT(summary.known.size == sizeof summary && summary.known.pairs == 1 && summary.later == 0.0);
+    summary.known.size = 8;
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, &summary.known, NULL) == FASTCCD_BAD_ARGUMENT);
+    mesh.size = 8;
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+}
+
+int main(void)
+{
+    test_queries();
+    test_single_pairs();
+    test_packed_pairs();
+    test_meshes();
+    test_other_sizes();
+    if (failures == 0) puts("the C interface is as promised");
+    return failures == 0 ? 0 : 1;
+}
