@@ -8,6 +8,12 @@ target_compile_options(c_interface_test PRIVATE -Wall -Wextra -pedantic -Werror)
 target_link_libraries(c_interface_test PRIVATE fastccd::shared m)
 add_test(NAME c_interface_test COMMAND c_interface_test)
 
+# The version is in two places.
+file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/include/fastccd/version.h version_line REGEX "define FASTCCD_VERSION \"")
+if(NOT version_line MATCHES "\"${PROJECT_VERSION}\"")
+  message(FATAL_ERROR "CMakeLists.txt says version ${PROJECT_VERSION}, version.h: ${version_line}")
+endif()
+
 # Debian's interpreter first: it is the one that Debian's numpy is for.
 find_program(FASTCCD_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(FASTCCD_PYTHON NAMES python3)
@@ -18,4 +24,19 @@ if(NOT FASTCCD_PYTHON OR no_numpy)
   message(WARNING "NOT TESTED: the C interface from Python, for want of python3 with numpy")
 elseif(NOT CMAKE_CROSSCOMPILING)
   add_test(NAME ctypes_test COMMAND ${FASTCCD_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/ctypes_test.py $<TARGET_FILE:fastccd_shared>)
+endif()
+
+add_test(NAME exported_symbols_test
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/exported_symbols_test.sh $<TARGET_FILE:fastccd_shared> ${CMAKE_CURRENT_SOURCE_DIR}/exported_symbols.txt)
+add_test(NAME readme_program_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/readme_program_test.sh ${PROJECT_SOURCE_DIR})
+if(NOT CMAKE_CROSSCOMPILING)
+  add_test(NAME install_test
+    COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/install_test.sh ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER} ${CMAKE_C_COMPILER})
+  foreach(shared IN ITEMS OFF ON)
+    add_test(NAME subdirectory_test_shared_${shared}
+      COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/subdirectory_test.sh ${PROJECT_SOURCE_DIR} ${CMAKE_CXX_COMPILER} ${shared})
+  endforeach()
+  if(FASTCCD_TOOLS)
+    add_test(NAME debian_package_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/debian_package_test.sh ${PROJECT_BINARY_DIR})
+  endif()
 endif()

@@ -9,7 +9,8 @@ say() { printf '\n== %s\n' "$*"; }
 
 library_packages=(g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev)
 tool_packages=(libcli11-dev libfmt-dev nlohmann-json3-dev libgmp-dev)
-test_packages=(libgtest-dev)
+# dpkg-dev, file: for cpack; binutils: for what the libraries export.
+test_packages=(libgtest-dev libeigen3-dev python3 python3-numpy dpkg-dev file binutils)
 bench_packages=(libbenchmark-dev)
 
 # install_packages NAME...: installs what is missing, and says so.

@@ -1,0 +1,69 @@
+// What the adapters for other interfaces share. Their tolerance is a distance, and minimum separation an argument.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fastccd/eigen.hpp>
+#include <fastccd/pair_view.hpp>
+
+namespace fastccd::adapters {
+
+using Vector = Eigen::Ref<const Eigen::Vector3d>;
+
+/// Four points of a pair at both ends of the step.
+struct MovingPair {
+    Point x0[4], x1[4];
+
+    MovingPair(const Vector& a0, const Vector& b0, const Vector& c0, const Vector& d0, const Vector& a1, const Vector& b1,
+               const Vector& c1, const Vector& d1)
+        : x0{eigen_detail::point(a0), eigen_detail::point(b0), eigen_detail::point(c0), eigen_detail::point(d0)},
+          x1{eigen_detail::point(a1), eigen_detail::point(b1), eigen_detail::point(c1), eigen_detail::point(d1)}
+    {
+    }
+
+    /// The largest distance that a point of the one primitive can move relative to one of the other during the step, to
+    /// within rounding: relative displacements are convex combinations of those of end points.
+    [[nodiscard]] double largest_displacement(PairKind kind) const
+    {
+        const int first_points = kind == PairKind::vertex_face ? 1 : 2;
+        double largest = 0.0;
+        for (int i = 0; i < first_points; ++i)
+            for (int j = first_points; j < 4; ++j) largest = std::max(largest, displacement(i, j));
+        return largest;
+    }
+
+private:
+    [[nodiscard]] double displacement(int i, int j) const
+    {
+        double d[3];
+        for (std::size_t axis = 0; axis < 3; ++axis) d[axis] = (x1[i][axis] - x1[j][axis]) - (x0[i][axis] - x0[j][axis]);
+        return std::hypot(d[0], d[1], d[2]);
+    }
+};
+
+/// True if the pair touches within [0, t_max]; toi is then a lower bound of the first time, less than `distance` of motion
+/// before it, to within rounding; otherwise toi is +infinity. These interfaces have no other way to name what cannot be
+/// answered: throws std::invalid_argument for a minimum separation other than 0, t_max outside [0, 1], a distance that is
+/// not positive, and coordinates that are not finite.
+inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
+{
+    if (minimum_separation != 0.0) throw std::invalid_argument("fastccd: minimum separation is not supported, pass 0");
+    if (!(t_max >= 0.0 && t_max <= 1.0)) throw std::invalid_argument("fastccd: t_max must be in [0, 1]");
+    if (!(distance > 0.0)) throw std::invalid_argument("fastccd: the tolerance must be positive");
+    Options options;
+    const double displacement = pair.largest_displacement(kind);
+    options.tolerance = std::clamp(distance / displacement, std::numeric_limits<double>::min(), 1.0);
+    if (!(displacement > 0.0)) options.tolerance = 1.0;
+    // At t_max = 0 the question is about the start alone: a pair at rest there.
+    if (t_max > 0.0) options.t_max = t_max;
+    const Point(&x1)[4] = t_max > 0.0 ? pair.x1 : pair.x0;
+    const PairToi found = kind == PairKind::vertex_face ? vertex_face_toi(pair.x0, x1, options) : edge_edge_toi(pair.x0, x1, options);
+    if (std::isnan(found.toi)) throw std::invalid_argument("fastccd: coordinates must be finite");
+    toi = found.toi;
+    return std::isfinite(toi);
+}
+
+}  // namespace fastccd::adapters

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# The installed package as its users meet it: found by CMake (shared and static) and by pkg-config, from C++ and C, and the
+# program of the README prints the contacts it should. Arguments: build folder, C++ compiler, C compiler.
+set -euo pipefail
+build=$1 cxx=$2 cc=$3
+tests=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+prefix=$work/prefix
+
+fail() { echo "FAILED: $*" >&2; exit 1; }
+quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; fail "$*"; }; }
+run() {
+  "$@" >"$work/output" || fail "$*"
+  diff "$tests/consumer/expected.txt" "$work/output" || fail "$* printed something else"
+}
+
+quietly cmake --install "$build" --prefix "$prefix"
+mv "$prefix" "$work/moved"  # an installation may be moved
+prefix=$work/moved
+
+for consumer in find_package find_package_static; do
+  quietly env CXX="$cxx" cmake -S "$tests/consumer/$consumer" -B "$work/$consumer" -DCMAKE_PREFIX_PATH="$prefix"
+  quietly cmake --build "$work/$consumer"
+  run "$work/$consumer/two_meshes"
+done
+ldd "$work/find_package/two_meshes" | grep -q "libfastccd.so.*$prefix" || fail "find_package did not link the installed shared library"
+if ldd "$work/find_package_static/two_meshes" | grep -q libfastccd; then fail "find_package with COMPONENTS static linked the shared library"; fi
+
+# Another version, or a component that is not there, is refused.
+mkdir "$work/refused"
+for wanted in "9.0" "0.0.1" "0.1 COMPONENTS no_such_component"; do
+  printf 'cmake_minimum_required(VERSION 3.22)\nproject(refused LANGUAGES CXX)\nfind_package(fastccd %s REQUIRED)\n' "$wanted" >"$work/refused/CMakeLists.txt"
+  rm -rf "$work/refused/build"
+  if env CXX="$cxx" cmake -S "$work/refused" -B "$work/refused/build" -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" 2>&1; then
+    fail "find_package(fastccd $wanted) was accepted"
+  fi
+done
+
+# pkg-config: the shared library, then the static one with what it needs.
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name fastccd.pc)")
+export PKG_CONFIG_PATH
+library=$(pkg-config --variable=libdir fastccd)
+export LD_LIBRARY_PATH=$library
+program=$tests/consumer/find_package/two_meshes.cpp
+read -ra flags <<<"$(pkg-config --cflags --libs fastccd)"
+quietly "$cxx" -std=c++20 -Wall -Wextra -Wpedantic -Werror "$program" "${flags[@]}" -o "$work/by_pkg_config"
+run "$work/by_pkg_config"
+quietly "$cc" -std=c99 -Wall -Wextra -pedantic -Werror "$tests/c_interface_test.c" "${flags[@]}" -lm -o "$work/in_c"
+quietly "$work/in_c"
+read -ra flags <<<"$(pkg-config --cflags fastccd) $(pkg-config --static --libs fastccd | sed 's/-lfastccd/-l:libfastccd.a/')"
+unset LD_LIBRARY_PATH
+quietly "$cxx" -std=c++20 "$program" "${flags[@]}" -o "$work/static_by_pkg_config"
+run "$work/static_by_pkg_config"
+quietly "$cc" -std=c99 "$tests/c_interface_test.c" "${flags[@]}" -o "$work/static_in_c"
+quietly "$work/static_in_c"
+[ "$(pkg-config --modversion fastccd)" = "$(sed -n 's/#define FASTCCD_VERSION "\(.*\)"/\1/p' "$prefix/include/fastccd/version.h")" ] ||
+  fail "fastccd.pc and version.h name different versions"
+
+# Each header stands alone, under a consumer's warnings; nothing leaks of how the library is built.
+echo 'typedef int something;' >"$work/something.c"
+for header in $(cd "$prefix/include" && find fastccd -type f); do
+  case $header in
+    *.h) quietly "$cc" -x c -std=c99 -Wall -Wextra -pedantic -Werror -fsyntax-only -I"$prefix/include" -include "$header" "$work/something.c" ;;
+  esac
+  quietly "$cxx" -x c++ -std=c++20 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -fsyntax-only -I"$prefix/include" \
+    -isystem /usr/include/eigen3 -include "$header" "$work/something.c"
+done
+grep -rnE '#include <(tbb|oneapi|xsimd|CLI|gmp)|(tbb|xsimd|mpz)[_:]' "$prefix/include" && fail "a public header names what is ours alone"
+grep -rlE 'Eigen(::|/)' "$prefix/include" | grep -vE '/eigen\.hpp$|/adapters/' && fail "Eigen outside its adapters"
+grep -rnE -- '-m(arch|tune|avx|sse|fma)|-ffp|-O[0-9]|-W' "$PKG_CONFIG_PATH" "$library/cmake" && fail "compiler options of the library reach its users"
+grep -rnF -- "$build" "$library/cmake" "$PKG_CONFIG_PATH" && fail "the installation names its build folder"
+echo "the installed package works for CMake, shared and static, pkg-config, C++ and C"
