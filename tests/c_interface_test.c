@@ -149,6 +149,23 @@ static void test_meshes(void)
     EXPECT(fastccd_mesh_time_of_impact(NULL, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
 }
 
+/* Fields only ever get appended: programs in other languages write these offsets down. */
+static void test_layout(void)
+{
+#if UINTPTR_MAX == UINT64_MAX
+    EXPECT(offsetof(fastccd_options, tolerance) == 8 && offsetof(fastccd_options, t_max) == 16 && offsetof(fastccd_options, isa) == 24);
+    EXPECT(offsetof(fastccd_options, reference) == 28 && offsetof(fastccd_options, exact) == 32 && offsetof(fastccd_options, reserved) == 36);
+    EXPECT(offsetof(fastccd_mesh, vertex_count) == 8 && offsetof(fastccd_mesh, start) == 16 && offsetof(fastccd_mesh, end) == 24);
+    EXPECT(offsetof(fastccd_mesh, face_count) == 32 && offsetof(fastccd_mesh, faces) == 40);
+    EXPECT(offsetof(fastccd_mesh, edge_count) == 48 && offsetof(fastccd_mesh, edges) == 56);
+    EXPECT(sizeof(fastccd_contact) == 24 && offsetof(fastccd_contact, toi) == 8 && offsetof(fastccd_contact, proven) == 16);
+    EXPECT(offsetof(fastccd_summary, pairs) == 8 && offsetof(fastccd_summary, invalid) == 48 && offsetof(fastccd_summary, scalar_pairs) == 56);
+    EXPECT(offsetof(fastccd_summary, earliest_pair) == 64 && offsetof(fastccd_summary, earliest_toi) == 72 && offsetof(fastccd_summary, isa) == 80);
+    EXPECT(offsetof(fastccd_step, step) == 8 && offsetof(fastccd_step, pair) == 16 && offsetof(fastccd_step, kind) == 24);
+    EXPECT(sizeof(fastccd_fault) == 16 && offsetof(fastccd_fault, index) == 8);
+#endif
+}
+
 /* A program that was compiled with a later header, and one that forgot the size. */
 static void test_other_sizes(void)
 {
@@ -187,6 +204,7 @@ int main(void)
     test_single_pairs();
     test_packed_pairs();
     test_meshes();
+    test_layout();
     test_other_sizes();
     if (failures == 0) puts("the C interface is as promised");
     return failures == 0 ? 0 : 1;

@@ -57,6 +57,10 @@ quietly "$work/static_in_c"
 [ "$(pkg-config --modversion fastccd)" = "$(sed -n 's/#define FASTCCD_VERSION "\(.*\)"/\1/p' "$prefix/include/fastccd/version.h")" ] ||
   fail "fastccd.pc and version.h name different versions"
 
+# Simulators may be built without exceptions and run-time types.
+quietly "$cxx" -std=c++20 -fno-exceptions -fno-rtti -Wall -Wextra -Werror "$program" $(pkg-config --cflags --libs fastccd) -o "$work/without_exceptions"
+LD_LIBRARY_PATH=$library run "$work/without_exceptions"
+
 # Each header stands alone, under a consumer's warnings; nothing leaks of how the library is built.
 echo 'typedef int something;' >"$work/something.c"
 for header in $(cd "$prefix/include" && find fastccd -type f); do

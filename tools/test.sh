@@ -2,7 +2,8 @@
 # Sets everything up, builds with warnings as errors, runs all tests.
 #
 #   tools/test.sh [ARGUMENT...]   arguments go to ctest
-#   tools/test.sh --all           and then: sanitizers, short fuzzing, races, an emulated x86-64 without AVX, an emulated arm64
+#   tools/test.sh --all           and then: sanitizers, short fuzzing, races, an emulated x86-64 without AVX, an emulated arm64,
+#                                 clang 19
 source "$(dirname "$0")/setup.sh"
 
 all=false
@@ -24,4 +25,5 @@ source "$root/tools/test_all.sh"
 test_sanitized_and_fuzz
 test_races
 test_other_machines
+test_other_compiler
 say "all passed"

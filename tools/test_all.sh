@@ -60,8 +60,22 @@ test_other_machines() {
   qemu-x86_64-static -cpu Nehalem "$build/tests/api_test" --gtest_brief=1
 
   build=$arm64 configure_and_build "-DCMAKE_TOOLCHAIN_FILE=$root/tools/arm64.cmake" -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON \
-    -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- fastccd_digest api_test
+    -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- fastccd_digest api_test c_interface_test
   say "emulated arm64"
   qemu-aarch64-static "$arm64/tests/fastccd_digest" $pairs | cmp - "$here"
   qemu-aarch64-static "$arm64/tests/api_test" --gtest_brief=1
+  qemu-aarch64-static "$arm64/tests/c_interface_test"
+  "$root/tests/exported_symbols_test.sh" "$arm64/libfastccd.so" "$root/tests/exported_symbols.txt"
+}
+
+# The newest compiler of Debian 12 besides g++ 12 and the clang 14 that test_sanitized_and_fuzz uses: the same answers, and the
+# package as users of that compiler build it.
+test_other_compiler() {
+  local here=$build/digest-here.txt pairs=60 clang19=$build-clang19
+  install_packages clang-19
+  "$build/tests/fastccd_digest" $pairs >"$here"
+  CC=clang-19 CXX=clang++-19 build=$clang19 configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
+  say "clang 19"
+  "$clang19/tests/fastccd_digest" $pairs | cmp - "$here"
+  ctest --test-dir "$clang19" --output-on-failure --parallel "$(nproc)" --exclude-regex '^oracle_test$'
 }

@@ -41,7 +41,7 @@ FASTCCD_API Status time_of_impact(PairKind kind, const PairView& pairs, const Op
                                   Summary* summary = nullptr, std::span<std::uint8_t> roots = {}) noexcept;
 
 /// Appends every pair in contact to `contacts`, in pair order, and the index of every invalid pair
-/// to `invalid` when given.
+/// to `invalid` when given; on an error, nothing. O(pairs); memory for twice what is appended.
 FASTCCD_API Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
                                  std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr) noexcept;
 
@@ -85,7 +85,7 @@ struct CollisionFreeStep {
 
 /// The largest step that vertex-face and edge-edge candidates together allow: the minimum of their dense answers, ties
 /// to vertex-face, then to the smaller index, on any number of threads. Pairs that cannot limit the step further are
-/// dropped early, across both kinds.
+/// dropped early, across both kinds. At most O(candidates).
 ///
 /// An invalid pair allows no step: unless a pair before it is in contact at time 0, the error is invalid_pair with that
 /// pair. Whenever there is an error of a pair, or an index out of range, `step.kind` tells which candidates `Status::pair`

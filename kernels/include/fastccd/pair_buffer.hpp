@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <span>
 
 #include <fastccd/aligned_doubles.hpp>
@@ -13,18 +15,19 @@ namespace fastccd {
 
 /// `size` pairs in 64-byte aligned blocks [24 coordinates][8 lanes] of double, 192 bytes a
 /// pair. Starts as all zeros; the lanes that pad the last block stay zero and are ignored.
-/// Like std::vector, its constructor throws std::bad_alloc, in the caller's own code.
+/// Like that of std::vector, its constructor throws std::bad_alloc, in the caller's own code; where that is compiled
+/// without exceptions, it aborts.
 class PairBuffer {
 public:
     PairBuffer() = default;
 
     explicit PairBuffer(std::size_t size) : size_{size}
     {
-        if (size > std::numeric_limits<std::size_t>::max() / (2 * pair_coordinates * sizeof(double))) throw std::bad_alloc{};
+        if (size > std::numeric_limits<std::size_t>::max() / (2 * pair_coordinates * sizeof(double))) out_of_memory();
         const std::size_t count = block_count() * block_coordinates;
         if (count == 0) return;
         data_ = allocate_aligned(count);
-        if (data_ == nullptr) throw std::bad_alloc{};
+        if (data_ == nullptr) out_of_memory();
         std::memset(data_.get(), 0, count * sizeof(double));
     }
 
@@ -46,6 +49,15 @@ public:
     [[nodiscard]] PairView view() const noexcept { return PairView::blocked(data_.get(), size_); }
 
 private:
+    [[noreturn]] static void out_of_memory()
+    {
+#if defined(__cpp_exceptions)
+        throw std::bad_alloc{};
+#else
+        std::abort();
+#endif
+    }
+
     [[nodiscard]] static std::size_t index(std::size_t i, std::size_t c) noexcept
     {
         return (i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs;
