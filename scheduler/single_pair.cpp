@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <fastccd/pair_view.hpp>
+#include <checked_source.hpp>
 #include <guarded.hpp>
-#include <tile_runner.hpp>
 
 namespace fastccd {
 
@@ -18,7 +18,7 @@ PairToi single(PairKind kind, std::span<const Point, 4> x0, std::span<const Poin
     answer.status = guarded([&] {
         Options search_alone = options;
         search_alone.reference = true;
-        Job job{kind, {}, {1.0, 1.0, false}, nullptr, false};
+        Job job = no_job(kind);
         if (const Status status = prepare(kind, PairSource{nullptr, {}, 1}, search_alone, false, job); !status.ok()) return status;
 
         double coordinates[pair_coordinates];

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <limits>
 
+#include <shared_best.hpp>
+
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 
@@ -104,6 +106,23 @@ TEST(CollisionFreeStep, TiesGoToVertexFaceThenToTheSmallerIndexOnAnyThreadCount)
             }
         });
     }
+}
+
+TEST(SharedBest, LeavesOutOnlyWhatCannotBeBetter)
+{
+    // Workers see tiles in any order: contact at time 0 settles the tiles behind it, not those before.
+    const Job job{PairKind::vertex_face, {}, {1e-9, 0.5, false}, nullptr, false};
+    SharedBest best;
+    EXPECT_EQ(best.cutoff(job, 0), 1.0);
+    best.offer({5000, 0.25});
+    EXPECT_EQ(best.cutoff(job, 6144), 0.5);
+    best.offer({3000, 0.0});
+    EXPECT_EQ(best.cutoff(job, 2048), 0.0);
+    EXPECT_LT(best.cutoff(job, 3072), 0.0);
+    best.offer({1000, 0.0});
+    best.offer({2000, 0.0});
+    best.offer({10, 0.1});
+    EXPECT_EQ(best.contact().pair, 1000u);
 }
 
 TEST(CollisionFreeStep, AnInvalidPairAllowsNone)

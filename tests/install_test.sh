@@ -38,8 +38,9 @@ for wanted in "9.0" "0.0.1" "0.1 COMPONENTS no_such_component"; do
 done
 
 # pkg-config: the shared library, then the static one with what it needs.
-PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name fastccd.pc)")
-export PKG_CONFIG_PATH
+# Alone: whoever has no development files of oneTBB and GMP can link the shared library.
+PKG_CONFIG_LIBDIR=$(dirname "$(find "$prefix" -name fastccd.pc)")
+export PKG_CONFIG_LIBDIR
 library=$(pkg-config --variable=libdir fastccd)
 export LD_LIBRARY_PATH=$library
 program=$tests/consumer/find_package/two_meshes.cpp
@@ -72,6 +73,6 @@ for header in $(cd "$prefix/include" && find fastccd -type f); do
 done
 grep -rnE '#include <(tbb|oneapi|xsimd|CLI|gmp)|(tbb|xsimd|mpz)[_:]' "$prefix/include" && fail "a public header names what is ours alone"
 grep -rlE 'Eigen(::|/)' "$prefix/include" | grep -vE '/eigen\.hpp$|/adapters/' && fail "Eigen outside its adapters"
-grep -rnE -- '-m(arch|tune|avx|sse|fma)|-ffp|-O[0-9]|-W' "$PKG_CONFIG_PATH" "$library/cmake" && fail "compiler options of the library reach its users"
-grep -rnF -- "$build" "$library/cmake" "$PKG_CONFIG_PATH" && fail "the installation names its build folder"
+grep -rnE -- '-m(arch|tune|avx|sse|fma)|-ffp|-O[0-9]|-W' "$PKG_CONFIG_LIBDIR" "$library/cmake" && fail "compiler options of the library reach its users"
+grep -rnF -- "$build" "$library/cmake" "$PKG_CONFIG_LIBDIR" && fail "the installation names its build folder"
 echo "the installed package works for CMake, shared and static, pkg-config, C++ and C"

@@ -38,5 +38,7 @@ if(NOT CMAKE_CROSSCOMPILING)
   endforeach()
   if(FASTCCD_TOOLS)
     add_test(NAME debian_package_test COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/debian_package_test.sh ${PROJECT_BINARY_DIR})
+    # Both go through the installation of the build folder.
+    set_tests_properties(install_test debian_package_test PROPERTIES RESOURCE_LOCK installation)
   endif()
 endif()

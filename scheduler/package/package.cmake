@@ -8,7 +8,8 @@ set_target_properties(fastccd PROPERTIES
   POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON EXPORT_NAME static)
 add_library(fastccd::static ALIAS fastccd)
 
-# Subprojects pay for the second library only if they ask for it.
+# As part of another project, fastccd::fastccd is static unless BUILD_SHARED_LIBS; installed, it is shared unless the component
+# static is asked for. Subprojects pay for the second library only if they ask for it.
 if(FASTCCD_INSTALL OR BUILD_SHARED_LIBS)
   # The same objects; CMake wants to see a source as well. Until 1.0 a minor version may change the binary interface; the soname says so.
   add_library(fastccd_shared SHARED ${PROJECT_SOURCE_DIR}/kernels/include/fastccd/fastccd.h)
@@ -51,9 +52,10 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/fastccd-config.cmake.in 
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/fastccd-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/fastccd-config.cmake ${PROJECT_BINARY_DIR}/fastccd-config-version.cmake DESTINATION ${cmake_dir})
 
-set(pc_requires tbb)
+# Not Requires.private: that has to be there even for those who link the shared library.
+set(pc_private "-ltbb -lstdc++ -lm")
 if(FASTCCD_EXACT)
-  string(APPEND pc_requires " gmp")
+  string(PREPEND pc_private "-lgmp ")
 endif()
 # Where the file lies decides the prefix, so that an installation can be moved.
 file(RELATIVE_PATH pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
