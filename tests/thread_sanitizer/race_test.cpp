@@ -242,6 +242,38 @@ TEST_P(Races, SeveralCallersAtOnce)
     }
 }
 
+/// From the dense answers: smallest toi, an invalid pair counting as 0, ties to vertex-face, then to the smaller index.
+CollisionFreeStep step_of(const Input& faces, const Input& edges)
+{
+    CollisionFreeStep step{1.0};
+    for (const Input* input : {&faces, &edges})
+        for (std::size_t i = 0; i < input->expected.toi.size(); ++i) {
+            const double toi = std::isnan(input->expected.toi[i]) ? 0.0 : input->expected.toi[i];
+            if (toi < step.step) step = {toi, input == &faces ? PairKind::vertex_face : PairKind::edge_edge, i};
+        }
+    return step;
+}
+
+TEST(CollisionFreeStep, OverBothKinds)
+{
+    for (std::size_t k = 0; k < inputs(oracle::Kind::vertex_face).size(); ++k) {
+        const Input &faces = inputs(oracle::Kind::vertex_face)[k], &edges = inputs(oracle::Kind::edge_edge)[k];
+        const CollisionFreeStep expected = step_of(faces, edges);
+        const std::vector<double>& toi = (expected.kind == PairKind::vertex_face ? faces : edges).expected.toi;
+        std::array<CollisionFreeStep, callers> found;
+        std::array<Status, callers> status;
+        ask_at_once([&](std::size_t caller) {
+            status[caller] = collision_free_step(faces.packed.view(), edges.packed.view(), faces.options, found[caller]);
+        });
+        for (std::size_t caller = 0; caller < callers; ++caller) {
+            EXPECT_EQ(status[caller].error, std::isnan(toi[expected.pair]) ? Error::invalid_pair : Error::none);
+            EXPECT_EQ(found[caller].step, expected.step);
+            EXPECT_EQ(found[caller].kind, expected.kind);
+            EXPECT_EQ(found[caller].pair, expected.pair);
+        }
+    }
+}
+
 TEST(IndexCheck, MoreIndicesThanOneTaskChecks)
 {
     const Input& input = inputs(oracle::Kind::vertex_face)[0];

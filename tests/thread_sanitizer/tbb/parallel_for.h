@@ -9,10 +9,16 @@
 
 namespace tbb {
 
+/// Nothing is cancelled here.
+struct task_group_context {
+    enum kind_type { isolated };
+    explicit task_group_context(kind_type) {}
+};
+
 /// Chunks of one grain, dealt to the workers in turn: neighbours run on different threads, and every thread gets its share, which
 /// on a busy machine a common counter would not give.
 template <class Value, class Body>
-void parallel_for(const blocked_range<Value>& range, const Body& body)
+void parallel_for(const blocked_range<Value>& range, const Body& body, task_group_context&)
 {
     const std::size_t size = range.end() - range.begin(), grain = range.grainsize();
     stand_in::for_each_worker([&] {
