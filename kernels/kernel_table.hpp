@@ -34,7 +34,7 @@ using PairQueue = LaneQueue<27>;
 using RootQueue = LaneQueue<22>;
 /// With a minimum separation: fields of SeparationRecord, before and after its first look.
 struct SeparationQueue : LaneQueue<22> {};
-struct AdvancingQueue : LaneQueue<33> {};
+struct AdvancingQueue : LaneQueue<35> {};
 
 /// What the search for roots works on, next to the rows of `candidates`.
 struct RootSearch {

@@ -63,12 +63,14 @@ struct SeparationParameters {
     double distance;   ///< d; 0: contact itself, which is another search.
     double threshold;  ///< A gap along a computed unit vector above this proves a distance above d.
     double stop;       ///< Closer than this is close enough to be reported.
+    double aim;        ///< Halfway to there.
     double certain;    ///< A computed distance up to this is certainly at most d.
 
     /// Computed unit vectors are longer than 1 by at most 5 u: the square errs by 3 u, its root by 2.5 u, the
     /// reciprocal and the product with it add 2 u. The multiplication here, and sums of a threshold and a bound, add 3 u.
     FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double tolerance = 0.0)
-        : distance{d}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance}, certain{d * (1.0 - 0x1p-49)}
+        : distance{d}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance}, aim{d + d * (0.5 * tolerance)},
+          certain{d * (1.0 - 0x1p-49)}
     {
     }
 

@@ -4,8 +4,9 @@
 // reach of the vector between the primitives: conservative advancement along a fixed direction, hence Newton's method where
 // the primitives approach. It begins with a look at the middle of the interval, whose reach is all of it for most
 // pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they turn, a fixed
-// vector reaches as far as the excess of the distance over d, one that turns as far as its square root: after some looks
-// the search looks ahead, and tries the vectors at both ends of an interval together.
+// vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
+// looks ahead, and tries the vectors at both ends of an interval together. It looks ahead to where the last two distances
+// let expect contact (the secant method), and, after some looks, as far as has gone well.
 //
 // This is the definition of the result. Every step is a function of the pair alone, in the same operations in every lane
 // type, so lanes and the scalar search come to the same time, bit for bit.
@@ -30,14 +31,16 @@ struct SeparationRecord {
     // While looking ahead:
     Vector3<L> n;  ///< Vector at `time`,
     L high;        ///< how far it reaches,
-    L interval;    ///< and the distance in time to look ahead.
+    L interval;    ///< and the time to look ahead at most; 0: any.
+    L last_time, last_distance;  ///< The last time the search had got to, and the distance then.
 };
 
 /// Purposes of a look: to go on from `time`; to go on from there to `at` while turning; to prove contact found at `time`.
 inline constexpr double going_on = 0.0, looking_ahead = 1.0, proving = 2.0;
 
-/// Looks after which the search begins to look ahead, and how far: that many times the reach of the vector at `time`.
-inline constexpr double most_plain_looks = 16, first_stretch = 8;
+/// Looks after which the search looks ahead even where the distance does not fall, and how far at least: that many times
+/// the reach of the vector at `time`.
+inline constexpr double most_plain_looks = 8, first_stretch = 8;
 
 /// Contact at `time` is to be proven when that many times the reach of the vector at `time` has passed. That reaches about to
 /// contact, less where the primitives turn; within so short a time they do not pass through each other.
@@ -67,7 +70,7 @@ FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const SearchPar
     pair.purpose = broadcast<L>(going_on);
     pair.at = pair.time;
     pair.n = {zero, zero, zero};
-    pair.high = pair.interval = zero;
+    pair.high = pair.interval = pair.last_time = pair.last_distance = zero;
     return less_equal(one, pair.time);
 }
 
@@ -115,15 +118,24 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParame
     const LaneMask<L> found = here & !(advancing | at_start);
 
     const L reach = high - time;
-    const L last_interval = select<L>(turned, pair.interval + pair.interval, pair.interval);
-    const L interval = select<L>(less(last_interval, reach + reach), broadcast<L>(first_stretch) * reach, last_interval);
-    const L ahead = min(time + interval, one);
-    const LaneMask<L> look_ahead = advancing & less(broadcast<L>(most_plain_looks), pair.looks) & less(next, ahead);
+    const L doubled = select<L>(turned, pair.interval + pair.interval, pair.interval);
+    const LaneMask<L> stretching = less(broadcast<L>(most_plain_looks), pair.looks);
+    const L interval = select<L>(stretching & less(doubled, reach + reach), broadcast<L>(first_stretch) * reach, doubled);
+    // Where the distance falls, the line through the last two times and distances tells when it will be close.
+    const L aim = broadcast<L>(wanted.aim) + broadcast<L>(0.5 * SeparationParameters::resolution) * size;
+    const L fall = pair.last_distance - sight.distance;
+    const LaneMask<L> falling = less(zero, fall);
+    const L until_close = (sight.distance - aim) * ((time - pair.last_time) / fall);
+    const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
+    const L ahead = min(time + span, one);
+    const LaneMask<L> look_ahead = advancing & (stretching | (falling & less(reach, span))) & less(next, ahead);
     const L later = min(time + select<L>(near, broadcast<L>(proof_stretch) * reach, broadcast<L>(parameters.leaf_width)), one);
 
     pair.n = sight.n;
     pair.high = high;
-    pair.interval = select<L>(too_far, broadcast<L>(0.25) * pair.interval, interval);
+    pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), interval);
+    pair.last_time = select<L>(here, time, pair.last_time);
+    pair.last_distance = select<L>(here, sight.distance, pair.last_distance);
     pair.time = select<L>(too_far | (advancing & !look_ahead), next, time);
     pair.at = select<L>(found, later, select<L>(look_ahead, ahead, pair.time));
     pair.purpose = select<L>(found, broadcast<L>(proving), select<L>(look_ahead, broadcast<L>(looking_ahead), broadcast<L>(going_on)));

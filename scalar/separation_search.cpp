@@ -26,6 +26,7 @@ SeparationParameters in_units(const SeparationParameters& s, int exponent)
     scaled.distance = std::scalbn(s.distance, exponent);
     scaled.threshold = std::scalbn(s.threshold, exponent);
     scaled.stop = std::scalbn(s.stop, exponent);
+    scaled.aim = std::scalbn(s.aim, exponent);
     scaled.certain = std::scalbn(s.certain, exponent);
     return scaled;
 }

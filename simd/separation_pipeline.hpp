@@ -31,6 +31,7 @@ FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit 
     visit(record.time), visit(record.window_low), visit(record.window_high);
     visit(record.looks), visit(record.purpose), visit(record.at);
     visit(record.n.x), visit(record.n.y), visit(record.n.z), visit(record.high), visit(record.interval);
+    visit(record.last_time), visit(record.last_distance);
 }
 
 template <PairKind kind, class L>
