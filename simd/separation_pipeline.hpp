@@ -111,7 +111,11 @@ private:
         record.pair = broadcast<L>(first) + Lane<L>::lane_number();
         const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
         if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
-        if (const unsigned kept = decidable & ~Lane<L>::bits(farther); kept != 0) push(scratch.separating, kept, record);
+        const unsigned kept = decidable & ~Lane<L>::bits(farther);
+        if (2 * static_cast<unsigned>(__builtin_popcount(kept)) >= width)
+            look_first(record, kept);
+        else if (kept != 0)
+            push(scratch.separating, kept, record);
     }
 
     /// Takes a batch from the end of a queue; returns the bits of the lanes that are in use.
@@ -124,18 +128,23 @@ private:
         return lanes_in_use(taken);
     }
 
-    /// Until fewer than `least` pairs are left.
+    /// The look at the middle, until fewer than `least` pairs are left.
     void look_first(unsigned least)
     {
         SeparationRecord<L> record;
         while (scratch.separating.size >= least) {
             prefetcher.lines(2 * width);
             const unsigned lanes = take_last(scratch.separating, record);
-            const unsigned kept = lanes & ~Lane<L>::bits(first_look<kind>(record, parameters));
-            if (kept == 0) continue;
-            push(scratch.advancing, kept, record);
-            if (scratch.advancing.size >= AdvancingQueue::drain_at) advance(width);
+            look_first(record, lanes);
         }
+    }
+
+    FASTCCD_INLINE void look_first(SeparationRecord<L>& record, unsigned lanes)
+    {
+        lanes &= ~Lane<L>::bits(first_look<kind>(record, parameters));
+        if (lanes == 0) return;
+        push(scratch.advancing, lanes, record);
+        if (scratch.advancing.size >= AdvancingQueue::drain_at) advance(width);
     }
 
     void advance(unsigned least)
