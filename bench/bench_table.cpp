@@ -52,6 +52,8 @@ std::string name(const Case& c)
                        (c.scalar == PairView::Scalar::float64 ? "/double" : "/float");
     if (c.question == Question::contacts) text += "/contacts";
     if (c.question == Question::earliest) text += "/earliest";
+    if (c.question == Question::separation) text += "/separation";
+    if (c.question == Question::separation_earliest) text += "/separation_earliest";
     return text + "/threads:" + std::to_string(c.threads);
 }
 
@@ -67,7 +69,8 @@ std::vector<Case> all_cases()
 {
     std::vector<Case> cases;
     const auto add = [&](PairKind kind, const std::string& data, Layout layout, PairView::Scalar scalar) {
-        for (const Question question : {Question::dense, Question::contacts, Question::earliest})
+        for (const Question question : {Question::dense, Question::contacts, Question::earliest, Question::separation,
+                                        Question::separation_earliest})
             for (const Isa isa : available_isas())
                 for (const int threads : thread_counts())
                     cases.push_back({kind, isa, data, layout, scalar, question, threads});

@@ -14,7 +14,21 @@ enum class Question {
     dense,     ///< time_of_impact: one time per pair.
     contacts,  ///< find_contacts: the list of pairs in contact.
     earliest,  ///< earliest_contact: the first contact of all.
+    separation,           ///< time_of_impact with a minimum separation; see bench_separation.
+    separation_earliest,  ///< earliest_contact with the same.
 };
+
+/// The minimum separation asked for: this times the mean length of an edge; random pairs: this.
+inline constexpr double bench_separation = 1e-3;
+
+[[nodiscard]] inline bool is_earliest(Question question)
+{
+    return question == Question::earliest || question == Question::separation_earliest;
+}
+[[nodiscard]] inline bool has_separation(Question question)
+{
+    return question == Question::separation || question == Question::separation_earliest;
+}
 
 struct Case {
     PairKind kind;
@@ -28,8 +42,8 @@ struct Case {
 
 [[nodiscard]] const char* name(PairKind kind) noexcept;
 
-/// "vertex_face/avx2/cloth-ball/blocked/double/threads:1"; before the threads "/contacts" or "/earliest" where the
-/// question is not the dense one.
+/// "vertex_face/avx2/cloth-ball/blocked/double/threads:1"; before the threads "/contacts", "/earliest",
+/// "/separation" or "/separation_earliest" where the question is not the dense one.
 [[nodiscard]] std::string name(const Case& c);
 
 /// Instruction sets of this build that this machine has, narrowest first.

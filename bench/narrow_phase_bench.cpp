@@ -4,6 +4,7 @@
 // state of the machine, and the ratio of their medians is the fraction of the streaming limit.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -90,20 +91,40 @@ Call call_of(Question question, const Options& options, A first, B second, std::
                 return find_contacts(first.get(), second, options, contacts, nullptr, &summary);
             };
         case Question::earliest:
+        case Question::separation_earliest:
             return [=](Summary& summary) {
                 return earliest_contact(first.get(), second, options, summary.earliest, &summary);
             };
-        case Question::dense: break;
+        case Question::dense:
+        case Question::separation: break;
     }
     return [=, toi = std::vector<double>(pairs)](Summary& summary) mutable {
         return time_of_impact(first.get(), second, options, toi, &summary);
     };
 }
 
+/// At the start; 1 for data that are no scene.
+double mean_edge_length(const Dataset& set)
+{
+    if (!set.scene) return 1.0;
+    double sum = 0;
+    for (const auto& edge : set.scene->edges) {
+        double square = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto coordinate = [&](std::int32_t vertex) { return set.scene->start[3 * static_cast<std::size_t>(vertex) + axis]; };
+            const double difference = coordinate(edge[1]) - coordinate(edge[0]);
+            square += difference * difference;
+        }
+        sum += std::sqrt(square);
+    }
+    return sum / static_cast<double>(set.scene->edges.size());
+}
+
 Call call_of(const Case& c, const Input& in)
 {
     Options options;
     options.isa = c.isa;
+    if (has_separation(c.question)) options.minimum_separation = bench_separation * mean_edge_length(dataset(c.data, c.kind));
     if (c.layout != Layout::indexed)
         return call_of(c.question, options, std::cref(in.kind), in.packed->view(), in.pairs);
     const Dataset& set = dataset(c.data, c.kind);
@@ -119,7 +140,7 @@ bool same_answer_as_before(const Case& c, const Summary& summary)
     using Key = std::tuple<std::string, PairKind, PairView::Scalar, Question>;
     using Answer = std::tuple<std::size_t, std::size_t, double>;
     static std::map<Key, Answer> answers;
-    const Answer answer{c.question == Question::earliest ? 0 : summary.contacts, summary.earliest.pair,
+    const Answer answer{is_earliest(c.question) ? 0 : summary.contacts, summary.earliest.pair,
                         summary.earliest.toi};
     return answers.try_emplace({c.data, c.kind, c.scalar, c.question}, answer).first->second == answer;
 }
@@ -147,7 +168,7 @@ void run(benchmark::State& state, const Case& c)
     if (!same_answer_as_before(c, summary)) return fail(state, "another answer than before for the same pairs");
 
     // The search for the earliest contact need not read all pairs, and indexed pairs are not what it streams.
-    const bool streams = in.limit && c.question != Question::earliest;
+    const bool streams = in.limit && !is_earliest(c.question);
     std::vector<double> call_seconds, pass_seconds;
     for ([[maybe_unused]] auto _ : state) {
         const auto begin = std::chrono::steady_clock::now();
@@ -159,7 +180,7 @@ void run(benchmark::State& state, const Case& c)
 
     using benchmark::Counter;
     state.counters["pairs/s"] = Counter(static_cast<double>(in.pairs), Counter::kIsIterationInvariantRate);
-    if (c.question != Question::earliest)
+    if (!is_earliest(c.question))
         state.counters["bytes/s"] = Counter(static_cast<double>(in.bytes), Counter::kIsIterationInvariantRate);
     if (streams) {
         const double limit_seconds = median(pass_seconds);
@@ -167,7 +188,7 @@ void run(benchmark::State& state, const Case& c)
         state.counters["limit_fraction"] = limit_seconds / median(call_seconds);
     }
     state.counters["pairs"] = static_cast<double>(in.pairs);
-    if (c.question != Question::earliest) state.counters["contacts"] = static_cast<double>(summary.contacts);
+    if (!is_earliest(c.question)) state.counters["contacts"] = static_cast<double>(summary.contacts);
     state.counters["scalar_share"] = static_cast<double>(summary.scalar_pairs) / static_cast<double>(in.pairs);
 }
 

@@ -34,6 +34,9 @@ using ScreenedQueue = LaneQueue<25>;
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<27>;
 using RootQueue = LaneQueue<22>;
+/// With a minimum separation: fields of SeparationRecord, before and after its first look.
+struct SeparationQueue : LaneQueue<22> {};
+struct AdvancingQueue : LaneQueue<35> {};
 
 /// What the search for roots works on, next to the rows of `candidates`.
 struct RootSearch {
@@ -76,6 +79,8 @@ struct TileScratch {
     RootSearch search;
     RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.
     Refinement refinement;
+    SeparationQueue separating;  ///< With a minimum separation: pairs that no coordinate axis keeps apart.
+    AdvancingQueue advancing;    ///< Pairs that the first look does not.
     /// The blocks of a group in the native layout, where the input is not.
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
     const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
@@ -92,6 +97,10 @@ struct TileRequest {
     /// Pairs whose toi is certainly greater than cutoff t_max may be reported as apart; 1: none.
     double cutoff;
 };
+
+/// The searched parameter s beyond which times are certainly greater than cutoff t_max, rounding of cutoff (one
+/// quotient) and of SearchParameters::time included.
+[[nodiscard]] FASTCCD_INLINE constexpr double time_limit(double cutoff) { return cutoff < 1.0 ? cutoff * (1.0 + 0x1p-49) : 1.0; }
 
 struct KernelTable {
     Isa isa;

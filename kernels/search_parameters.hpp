@@ -2,6 +2,7 @@
 #pragma once
 
 #include <error_bound.hpp>
+#include <separation_bound.hpp>
 
 namespace fastccd {
 
@@ -14,9 +15,11 @@ struct SearchParameters {
     double leaf_width;  ///< w = 2^-depth, the largest with w t_max <= E_tol (at least 2^-50).
     double leaf_count;  ///< 2^depth.
     bool count_roots;
+    SeparationParameters separation;  ///< With a distance above 0 times are found as in separation_steps.hpp instead.
 
-    SearchParameters(double tolerance, double t_max_, bool count_roots_)
-        : t_max{t_max_}, bounds{t_max_}, leaf_width{1.0}, leaf_count{1.0}, count_roots{count_roots_}
+    SearchParameters(double tolerance, double t_max_, bool count_roots_,
+                     const SeparationParameters& separation_ = SeparationParameters{})
+        : t_max{t_max_}, bounds{t_max_}, leaf_width{1.0}, leaf_count{1.0}, count_roots{count_roots_}, separation{separation_}
     {
         while (leaf_width * t_max > tolerance && leaf_width > 0x1p-50) {
             leaf_width *= 0.5;

@@ -19,7 +19,10 @@ static_assert(FASTCCD_BAD_TOLERANCE == static_cast<int>(Error::bad_tolerance) &&
               FASTCCD_ISA_UNAVAILABLE == static_cast<int>(Error::isa_unavailable) &&
               FASTCCD_BAD_ISA_ENVIRONMENT == static_cast<int>(Error::bad_isa_environment) &&
               FASTCCD_INDEX_OUT_OF_RANGE == static_cast<int>(Error::index_out_of_range) &&
-              FASTCCD_INVALID_PAIR == static_cast<int>(Error::invalid_pair) && FASTCCD_OUT_OF_MEMORY == static_cast<int>(Error::out_of_memory));
+              FASTCCD_INVALID_PAIR == static_cast<int>(Error::invalid_pair) && FASTCCD_OUT_OF_MEMORY == static_cast<int>(Error::out_of_memory) &&
+              FASTCCD_BAD_MINIMUM_SEPARATION == static_cast<int>(Error::bad_minimum_separation) &&
+              FASTCCD_BAD_DISTANCE_TOLERANCE == static_cast<int>(Error::bad_distance_tolerance) &&
+              FASTCCD_EXACT_SEPARATION == static_cast<int>(Error::exact_separation));
 static_assert(FASTCCD_VERTEX_FACE == static_cast<int>(PairKind::vertex_face) && FASTCCD_EDGE_EDGE == static_cast<int>(PairKind::edge_edge));
 static_assert(FASTCCD_ISA_AUTOMATIC == static_cast<int>(Isa::automatic) && FASTCCD_ISA_SCALAR == static_cast<int>(Isa::scalar) &&
               FASTCCD_ISA_SSE2 == static_cast<int>(Isa::sse2) && FASTCCD_ISA_AVX2 == static_cast<int>(Isa::avx2) &&
@@ -63,7 +66,7 @@ bool has_size(const Struct* given, std::size_t least)
 fastccd_options to_c(const Options& options)
 {
     return {sizeof(fastccd_options),        options.tolerance, options.t_max, static_cast<std::int32_t>(options.isa), options.reference ? 1 : 0,
-            options.exact ? 1 : 0, 0};
+            options.exact ? 1 : 0, 0, options.minimum_separation, options.distance_tolerance};
 }
 
 /// Defaults for a null pointer.
@@ -78,6 +81,8 @@ int to_cpp(const fastccd_options* given, Options& options)
     options.isa = static_cast<Isa>(known.isa);
     options.reference = known.reference != 0;
     options.exact = known.exact != 0;
+    options.minimum_separation = known.minimum_separation;
+    options.distance_tolerance = known.distance_tolerance;
     return FASTCCD_OK;
 }
 
@@ -92,7 +97,7 @@ void report(const Summary& from, fastccd_summary* to)
 {
     if (to == nullptr) return;
     write_struct({0, from.pairs, from.contacts, from.proven, from.odd, from.even, from.invalid, from.scalar_pairs, from.earliest.pair,
-                  from.earliest.toi, static_cast<std::int32_t>(from.isa), 0},
+                  from.earliest.toi, static_cast<std::int32_t>(from.isa), 0, from.at_start},
                  *to);
 }
 
@@ -132,7 +137,7 @@ int compact(const Request& request, fastccd_contact* contacts, std::size_t capac
     if (status.ok()) {
         *found = list.size();
         const auto written = list.begin() + static_cast<std::ptrdiff_t>(std::min(capacity, list.size()));
-        std::transform(list.begin(), written, contacts, [](const Contact& c) { return fastccd_contact{c.pair, c.toi, c.proven ? 1 : 0, 0}; });
+        std::transform(list.begin(), written, contacts, [](const Contact& c) { return fastccd_contact{c.pair, c.toi, c.proven ? 1 : 0, c.at_start ? 1 : 0}; });
         report(summary, request.summary);
     }
     return report(status, request.fault);
@@ -189,7 +194,7 @@ const char* fastccd_version(void) { return FASTCCD_VERSION; }
 const char* fastccd_message(int error)
 {
     if (error == FASTCCD_BAD_ARGUMENT) return "a pointer is null, a kind is unknown, or the size of a struct is not set";
-    if (error < FASTCCD_OK || error > FASTCCD_OUT_OF_MEMORY) return "unknown error";
+    if (error < FASTCCD_OK || error > FASTCCD_EXACT_SEPARATION) return "unknown error";
     return message(static_cast<Error>(error));
 }
 

@@ -29,7 +29,7 @@ std::size_t offer_all(const Job& job, std::size_t offset, SharedBest& best)
     const auto cutoff = [&](std::size_t first) { return best.cutoff(job, offset + first); };
     for_each_tile(job, workers, cutoff, [&](StepWorker& worker, std::size_t first, std::size_t) {
         const Contact& earliest = worker.totals.earliest;
-        if (earliest.pair != no_pair) best.offer({offset + earliest.pair, earliest.toi, earliest.proven});
+        if (earliest.pair != no_pair) best.offer({offset + earliest.pair, earliest.toi, earliest.proven, earliest.at_start});
         if (worker.totals.invalid == worker.invalid_before) return;
         worker.invalid_before = worker.totals.invalid;
         for_each_bit(worker.scratch.reported, [&](std::size_t i) {

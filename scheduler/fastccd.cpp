@@ -62,7 +62,7 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
                 if (std::isnan(t))
                     worker.invalid.push_back(first + i);
                 else
-                    worker.contacts.push_back({first + i, t, !is_set(worker.scratch.is_unproven, i)});
+                    worker.contacts.push_back(contact_of(job, worker.scratch, first, i));
             });
             share.contacts_end = worker.contacts.size();
             share.invalid_end = worker.invalid.size();
@@ -95,7 +95,7 @@ Status earliest(PairKind kind, const CheckedSource& pairs, const Options& option
         best.offer(worker.totals.earliest);
     });
     contact = best.contact();
-    totals.contacts = totals.proven = 0;
+    totals.contacts = totals.proven = totals.at_start = 0;
     totals.earliest = contact;
     if (summary != nullptr) *summary = totals;
     return {};
@@ -170,6 +170,9 @@ const char* message(Error error) noexcept
         case Error::index_out_of_range: return "an index of the pair points outside its array";
         case Error::invalid_pair: return "a coordinate of the pair is not a finite number";
         case Error::out_of_memory: return "out of memory, or the system refused a thread";
+        case Error::bad_minimum_separation: return "the minimum separation must be a finite number, at least 0";
+        case Error::bad_distance_tolerance: return "the distance tolerance must be a finite number, at least 0";
+        case Error::exact_separation: return "there is no exact verdict with a minimum separation";
     }
     return "unknown error";
 }

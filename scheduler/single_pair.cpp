@@ -25,9 +25,10 @@ PairToi single(PairKind kind, std::span<const Point, 4> x0, std::span<const Poin
         double* next = coordinates;
         for (const Point& point : x0) next = std::copy(point.begin(), point.end(), next);
         for (const Point& point : x1) next = std::copy(point.begin(), point.end(), next);
-        const scalar::SearchResult found = answer_pair(job, coordinates);
+        const scalar::SearchResult found = answer_pair(job, coordinates, 1.0);
         answer.toi = found.toi;
         answer.proven = std::isfinite(found.toi) && found.proof != scalar::Proof::none;
+        answer.at_start = options.minimum_separation > 0.0 && found.toi == 0.0;
         return Status{};
     });
     return answer;

@@ -8,6 +8,7 @@
 #include <block_source.hpp>
 #include <exact_contact.hpp>
 #include <fastccd/isa.hpp>
+#include <separation_search.hpp>
 
 namespace fastccd {
 
@@ -58,7 +59,7 @@ void settle(const Job& job, const double* coordinates, scalar::SearchResult& fou
     }
 }
 
-void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& scratch)
+void search_pair(const Job& job, std::size_t first, std::size_t i, double cutoff, TileScratch& scratch)
 {
     double coordinates[pair_coordinates];
     if (job.source.view == nullptr)
@@ -67,7 +68,7 @@ void search_pair(const Job& job, std::size_t first, std::size_t i, TileScratch& 
         load_pair<double>(*job.source.view, first + i, coordinates);
     else
         load_pair<float>(*job.source.view, first + i, coordinates);
-    const scalar::SearchResult found = answer_pair(job, coordinates);
+    const scalar::SearchResult found = answer_pair(job, coordinates, cutoff);
     scratch.time[i] = found.toi;
     scratch.roots[i] = found.roots;
     const std::uint64_t bit = std::uint64_t{1} << i % 64;
@@ -107,16 +108,23 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
     if (!(options.tolerance > 0.0) || std::isinf(options.tolerance)) return {Error::bad_tolerance};
     if (!(options.t_max > 0.0 && options.t_max <= 1.0)) return {Error::bad_t_max};
     if (source.view != nullptr && source.size > 0 && source.view->data() == nullptr) return {Error::wrong_size};
+    if (!(options.minimum_separation >= 0.0) || std::isinf(options.minimum_separation)) return {Error::bad_minimum_separation};
+    if (!(options.distance_tolerance >= 0.0) || std::isinf(options.distance_tolerance)) return {Error::bad_distance_tolerance};
+    if (options.exact && options.minimum_separation > 0.0) return {Error::exact_separation};
     if (options.exact && !scalar::exact_contact_available()) return {Error::exact_unavailable};
     const KernelTable* kernels = nullptr;
     if (!options.reference)
         if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
-    job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots}, kernels, options.exact};
+    job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots,
+                                            SeparationParameters{options.minimum_separation, options.distance_tolerance}},
+           kernels, options.exact};
     return {};
 }
 
-scalar::SearchResult answer_pair(const Job& job, const double* coordinates)
+scalar::SearchResult answer_pair(const Job& job, const double* coordinates, double cutoff)
 {
+    if (job.parameters.separation.distance > 0.0)
+        return scalar::separation_search(job.kind, coordinates, job.parameters, time_limit(cutoff));
     scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
     if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
     return found;
@@ -129,26 +137,26 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
         job.kernels->run_tile({job.kind, &job.source, first, count, &job.parameters, cutoff}, scratch);
         for_each_bit(scratch.reported, [&](std::size_t i) { scratch.time[i] = job.parameters.time(scratch.time[i]); });
         for_each_bit(scratch.is_undecided, [&](std::size_t i) {
-            search_pair(job, first, i, scratch);
+            search_pair(job, first, i, cutoff, scratch);
             ++totals.scalar_pairs;
         });
     } else {
         for (std::uint64_t& word : scratch.reported) word = 0;
-        for (std::size_t i = 0; i < count; ++i) search_pair(job, first, i, scratch);
+        for (std::size_t i = 0; i < count; ++i) search_pair(job, first, i, cutoff, scratch);
         totals.scalar_pairs += count;
     }
 
     for_each_bit(scratch.reported, [&](std::size_t i) {
-        const double toi = scratch.time[i];
-        if (std::isnan(toi)) {
+        if (std::isnan(scratch.time[i])) {
             ++totals.invalid;
             return;
         }
-        const bool proven = !is_set(scratch.is_unproven, i);
+        const Contact contact = contact_of(job, scratch, first, i);
         ++totals.contacts;
-        if (proven) ++totals.proven;
+        if (contact.proven) ++totals.proven;
+        if (contact.at_start) ++totals.at_start;
         if (job.parameters.count_roots && scratch.roots[i] != 0) ++(scratch.roots[i] % 2 == 1 ? totals.odd : totals.even);
-        keep_earlier(totals.earliest, {first + i, toi, proven});
+        keep_earlier(totals.earliest, contact);
     });
 }
 
@@ -156,6 +164,7 @@ void add(Summary& whole, const Summary& part)
 {
     whole.contacts += part.contacts;
     whole.proven += part.proven;
+    whole.at_start += part.at_start;
     whole.odd += part.odd;
     whole.even += part.even;
     whole.invalid += part.invalid;

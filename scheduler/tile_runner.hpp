@@ -23,8 +23,8 @@ struct Job {
 /// Checks options and chooses the kernels. On error the job must not be run.
 Status prepare(PairKind kind, const PairSource& source, const Options& options, bool count_roots, Job& job);
 
-/// Answers one pair, of 24 coordinates in the order of PairView, by the certified search.
-scalar::SearchResult answer_pair(const Job& job, const double* coordinates);
+/// Answers one pair, of 24 coordinates in the order of PairView, by the scalar search. `cutoff`: see run_tile.
+scalar::SearchResult answer_pair(const Job& job, const double* coordinates, double cutoff);
 
 /// Answers `count` <= tile_pairs pairs from `first` (a multiple of tile_pairs) on, into time, roots and reported of
 /// the scratch; adds to `totals` everything but `pairs`. With cutoff < 1, pairs whose toi is greater than
@@ -42,6 +42,13 @@ void for_each_bit(const std::uint64_t (&words)[tile_pairs / 64], Visit visit)
 
 /// Bit i of a tile's words.
 inline bool is_set(const std::uint64_t (&words)[tile_pairs / 64], std::size_t i) { return (words[i / 64] >> i % 64 & 1) != 0; }
+
+/// Pair `i` of a tile that starts at `first`, which the tile reports in contact.
+inline Contact contact_of(const Job& job, const TileScratch& scratch, std::size_t first, std::size_t i)
+{
+    const double toi = scratch.time[i];
+    return {first + i, toi, !is_set(scratch.is_unproven, i), job.parameters.separation.distance > 0.0 && toi == 0.0};
+}
 
 /// Adds the totals of a part to those of the whole.
 void add(Summary& whole, const Summary& part);

@@ -8,6 +8,7 @@
 #endif
 
 #include <pipeline.hpp>
+#include <separation_pipeline.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -21,7 +22,10 @@ namespace {
 
 void run_kernel_tile(const TileRequest& request, TileScratch& scratch)
 {
-    run_tile<KernelLane>(request, scratch);
+    if (request.parameters->separation.distance > 0.0)
+        run_separation_tile<KernelLane>(request, scratch);
+    else
+        run_tile<KernelLane>(request, scratch);
 }
 
 }  // namespace

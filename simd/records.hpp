@@ -62,8 +62,8 @@ FASTCCD_INLINE Cubic<L> compute_again(PairRecord<L>& root, const SearchParameter
 }
 
 /// Appends the lanes of `record` whose bit is set.
-template <class Queue, class L>
-FASTCCD_INLINE void push(Queue& queue, unsigned bits, const PairRecord<L>& record)
+template <class Queue, template <class> class Record, class L>
+FASTCCD_INLINE void push(Queue& queue, unsigned bits, const Record<L>& record)
 {
     double* const end = &queue.data[0][queue.size];
     queue.size += static_cast<unsigned>(__builtin_popcount(bits));
@@ -74,8 +74,8 @@ FASTCCD_INLINE void push(Queue& queue, unsigned bits, const PairRecord<L>& recor
 }
 
 /// Lanes first, first + 1, ... of the queue; whatever lies past its end in the last ones.
-template <class Queue, class L>
-FASTCCD_INLINE void read(const Queue& queue, unsigned first, PairRecord<L>& record)
+template <class Queue, template <class> class Record, class L>
+FASTCCD_INLINE void read(const Queue& queue, unsigned first, Record<L>& record)
 {
     const double* const begin = &queue.data[0][first];
     unsigned row = 0;

@@ -132,12 +132,23 @@ TEST_P(Adapter, NeverZeroIfApartAtTheStart)
     }
 }
 
+TEST_P(Adapter, MinimumSeparation)
+{
+    // The vertex falls from height 1 to -1: within 0.1 at 9/20.
+    double toi = -1.0;
+    EXPECT_TRUE(GetParam()(oracle::Kind::vertex_face, falling, {0.1}, toi));
+    EXPECT_LE(toi, 0.45);
+    EXPECT_GE(toi, 0.45 - 1e-6);
+    EXPECT_FALSE(GetParam()(oracle::Kind::vertex_face, falling, {0.1, 1e-6, 0.4}, toi));
+    EXPECT_TRUE(GetParam()(oracle::Kind::vertex_face, falling, {1.5}, toi));
+    EXPECT_EQ(toi, 0.0);
+}
+
 TEST_P(Adapter, WhatCannotBeAnsweredIsAnError)
 {
     double toi = 7.0;
     const auto ask = [&](const oracle::Pair& pair, const Asked& asked) { (void)GetParam()(oracle::Kind::vertex_face, pair, asked, toi); };
-    EXPECT_THROW(ask(falling, {1e-3}), std::invalid_argument);
-    EXPECT_THROW(ask(falling, {-1e-3}), std::invalid_argument);
+    for (const double bad : {-1e-3, infinity, std::numeric_limits<double>::quiet_NaN()}) EXPECT_THROW(ask(falling, {bad}), std::invalid_argument);
     EXPECT_THROW(ask(falling, {0.0, 1e-6, 1.5}), std::invalid_argument);
     EXPECT_THROW(ask(falling, {0.0, 1e-6, -0.1}), std::invalid_argument);
     for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) EXPECT_THROW(ask(falling, {0.0, bad, 1.0}), std::invalid_argument);
@@ -175,7 +186,8 @@ TEST(IpcToolkit, PointsAndEdgesInSpaceAndInThePlane)
     EXPECT_TRUE(ccd.point_point_ccd(p0, e0, e0, p0, toi));
     const Eigen::VectorXd line = Eigen::VectorXd::Zero(1);
     EXPECT_THROW((void)ccd.point_point_ccd(line, line, line, line, toi), std::invalid_argument);
-    EXPECT_THROW((void)ccd.point_edge_ccd(p0, e0, e1, p1, e0, e1, toi, 1e-3), std::invalid_argument);
+    EXPECT_TRUE(ccd.point_edge_ccd(p0, e0, e1, far, e0, e1, toi, 1.5));  // 1 away at the start
+    EXPECT_EQ(toi, 0.0);
 }
 
 template <class Matrix>

@@ -173,6 +173,51 @@ TEST(BroadPhase, OneUlpDecides)
     EXPECT_TRUE(vertex_face_candidates(scene.step()).empty());
 }
 
+/// Every pair whose boxes are at most `separation` apart along each axis, and none that is farther by more than rounding.
+TEST(BroadPhase, SeparationGrowsTheBoxes)
+{
+    std::mt19937_64 random{14};
+    std::uniform_real_distribution<double> draw{-1.0, 1.0};
+    Scene scene;
+    for (int i = 0; i < 3 * 60; ++i) scene.positions0.push_back(draw(random));
+    for (const double x : scene.positions0) scene.positions1.push_back(x + 0.05 * draw(random));
+    for (std::int32_t v = 0; v < 60; ++v) scene.edges.push_back({v, (v + 1) % 60});
+    const auto gap = [&](const Edge& a, const Edge& b) {
+        double largest = -infinity;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            double low[2] = {infinity, infinity}, high[2] = {-infinity, -infinity};
+            for (std::size_t side = 0; side < 2; ++side)
+                for (const std::int32_t vertex : side == 0 ? a : b)
+                    for (const auto* positions : {&scene.positions0, &scene.positions1}) {
+                        const double x = (*positions)[3 * static_cast<std::size_t>(vertex) + axis];
+                        low[side] = std::min(low[side], x);
+                        high[side] = std::max(high[side], x);
+                    }
+            largest = std::max({largest, low[0] - high[1], low[1] - high[0]});
+        }
+        return largest;
+    };
+    std::size_t before = edge_edge_candidates(scene.step()).size();
+    for (const double separation : {0.1, 0.3, 1.0}) {
+        Step step = scene.step();
+        step.separation = separation;
+        const std::vector<EdgeEdge> found = edge_edge_candidates(step);
+        EXPECT_GT(found.size(), before);
+        before = found.size();
+        std::size_t next = 0;
+        for (std::int32_t a = 0; a < 60; ++a)
+            for (std::int32_t b = a + 1; b < 60; ++b) {
+                const Edge& ea = scene.edges[static_cast<std::size_t>(a)];
+                const Edge& eb = scene.edges[static_cast<std::size_t>(b)];
+                if (ea[0] == eb[1] || ea[1] == eb[0]) continue;
+                const bool candidate = next < found.size() && found[next].edge_a == a && found[next].edge_b == b;
+                next += candidate;
+                EXPECT_TRUE(candidate ? gap(ea, eb) <= separation + 1e-15 : gap(ea, eb) > separation) << a << ' ' << b;
+            }
+        EXPECT_EQ(next, found.size());
+    }
+}
+
 TEST(BroadPhase, ExtremeScalesAndFarOutliers)
 {
     std::mt19937 random(3);

@@ -155,15 +155,47 @@ static void test_layout(void)
 #if UINTPTR_MAX == UINT64_MAX
     EXPECT(offsetof(fastccd_options, tolerance) == 8 && offsetof(fastccd_options, t_max) == 16 && offsetof(fastccd_options, isa) == 24);
     EXPECT(offsetof(fastccd_options, reference) == 28 && offsetof(fastccd_options, exact) == 32 && offsetof(fastccd_options, reserved) == 36);
+    EXPECT(offsetof(fastccd_options, minimum_separation) == 40 && offsetof(fastccd_options, distance_tolerance) == 48);
     EXPECT(offsetof(fastccd_mesh, vertex_count) == 8 && offsetof(fastccd_mesh, start) == 16 && offsetof(fastccd_mesh, end) == 24);
     EXPECT(offsetof(fastccd_mesh, face_count) == 32 && offsetof(fastccd_mesh, faces) == 40);
     EXPECT(offsetof(fastccd_mesh, edge_count) == 48 && offsetof(fastccd_mesh, edges) == 56);
     EXPECT(sizeof(fastccd_contact) == 24 && offsetof(fastccd_contact, toi) == 8 && offsetof(fastccd_contact, proven) == 16);
+    EXPECT(offsetof(fastccd_contact, at_start) == 20 && offsetof(fastccd_summary, at_start) == 88);
     EXPECT(offsetof(fastccd_summary, pairs) == 8 && offsetof(fastccd_summary, invalid) == 48 && offsetof(fastccd_summary, scalar_pairs) == 56);
     EXPECT(offsetof(fastccd_summary, earliest_pair) == 64 && offsetof(fastccd_summary, earliest_toi) == 72 && offsetof(fastccd_summary, isa) == 80);
     EXPECT(offsetof(fastccd_step, step) == 8 && offsetof(fastccd_step, pair) == 16 && offsetof(fastccd_step, kind) == 24);
     EXPECT(sizeof(fastccd_fault) == 16 && offsetof(fastccd_fault, index) == 8);
 #endif
+}
+
+/* The vertex falls from height 1 to -1; a program that does not know minimum separation has none. */
+static void test_minimum_separation(void)
+{
+    double toi;
+    fastccd_contact found;
+    fastccd_summary summary;
+    size_t count = 0;
+    fastccd_mesh mesh = make_mesh();
+    fastccd_options options;
+    fastccd_options_init(&options, sizeof options);
+    EXPECT(options.minimum_separation == 0.0 && options.distance_tolerance == 1e-6);
+    options.minimum_separation = 0.1;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_OK && toi < 0.5 && toi > 0.4);
+    options.size = 40;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_OK && near(toi, 0.5));
+    options.size = sizeof options;
+    options.minimum_separation = 1e3;
+    summary.size = sizeof summary;
+    EXPECT(fastccd_mesh_find_contacts(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, &options, &found, 1, &count, &summary, NULL) == FASTCCD_OK);
+    EXPECT(count == 1 && found.toi == 0.0 && found.at_start == 1 && summary.at_start == 1);
+    options.exact = 1;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_EXACT_SEPARATION);
+    options.exact = 0;
+    options.distance_tolerance = -1.0;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_BAD_DISTANCE_TOLERANCE);
+    options.minimum_separation = -1.0;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_BAD_MINIMUM_SEPARATION);
+    EXPECT(strstr(fastccd_message(FASTCCD_EXACT_SEPARATION), "separation") != NULL);
 }
 
 /* A program that was compiled with a later header, and one that forgot the size. */
@@ -205,6 +237,7 @@ int main(void)
     test_packed_pairs();
     test_meshes();
     test_layout();
+    test_minimum_separation();
     test_other_sizes();
     if (failures == 0) puts("the C interface is as promised");
     return failures == 0 ? 0 : 1;

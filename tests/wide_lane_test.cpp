@@ -5,6 +5,7 @@
 #include <memory>
 
 #include <pipeline.hpp>
+#include <separation_pipeline.hpp>
 
 #include "generators.hpp"
 #include "narrow_phase.hpp"
@@ -105,6 +106,34 @@ TEST(WideLanes, DecideWhatTheCertifiedSearchDecides)
             }
         }
     EXPECT_GT(decided, 10000u);
+}
+
+TEST(WideLanes, KeepADistanceAsTheScalarSearchDoes)
+{
+    const auto scratch = std::make_unique<TileScratch>();
+    std::size_t decided = 0;
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 42, 509, pairs);
+            const PairBuffer buffer = to_buffer(pairs);
+            const PairView view = buffer.view();
+            const PairSource source{&view, {}, view.size()};
+            Options options;
+            options.reference = true;
+            options.minimum_separation = 1e-2;
+            const SearchParameters parameters{options.tolerance, 1.0, false,
+                                              SeparationParameters{options.minimum_separation, options.distance_tolerance}};
+            const Answer expected = answer(kind, view, options);
+            FASTCCD_KERNEL_NAMESPACE::run_separation_tile<FASTCCD_KERNEL_NAMESPACE::Array8>(
+                {pair_kind(kind), &source, 0, pairs.size(), &parameters, 1.0}, *scratch);
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                if ((scratch->is_undecided[i / 64] >> i % 64 & 1) != 0) continue;
+                ++decided;
+                ASSERT_EQ(scratch->time[i], expected.toi[i]) << family << ' ' << lossless(pairs[i]);
+            }
+        }
+    EXPECT_GT(decided, 50000u);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ void add_scene_command(CLI::App& app)
         })
         ->type_name("DIR");
     add_search_options(*command, options->common);
+    add_separation_options(*command, options->common);
     add_report_options(*command, options->common,
                        "step,kind,v0,v1,v2,v3,toi; vf: the vertex,\nthen the face's; ee: the first edge's, then the second's");
     command->callback([options] {

@@ -103,6 +103,30 @@ void add_search_options(CLI::App& command, CommonOptions& options)
                      "Settle contacts that rounding leaves possible but not proven\nby rational arithmetic: none reported is a false alarm");
 }
 
+void add_separation_options(CLI::App& command, CommonOptions& options)
+{
+    const auto at_least_zero = number_check("a finite number, at least 0", [](double x) { return x >= 0 && std::isfinite(x); });
+    command
+        .add_option("--min-separation", options.narrow_phase.minimum_separation,
+                    "Contact is a distance of at most D, in units of the coordinates;\npairs as close at the start get toi 0")
+        ->check(at_least_zero)
+        ->type_name("D")
+        ->excludes("--exact");
+    command
+        .add_option("--distance-tolerance", options.narrow_phase.distance_tolerance,
+                    "Pairs count as in contact from a distance of (1 + X) D on")
+        ->check(at_least_zero)
+        ->type_name("X")
+        ->needs("--min-separation")
+        ->capture_default_str();
+}
+
+std::string separation_asked(const Options& options)
+{
+    if (options.minimum_separation == 0.0) return {};
+    return fmt::format(", minimum separation {} (+ {} of it)", options.minimum_separation, options.distance_tolerance);
+}
+
 void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns)
 {
     command
@@ -126,9 +150,11 @@ void add_pair_options(CLI::App& command, PairOptions& options)
         ->required()
         ->type_name("vf|ee");
     add_search_options(command, options);
+    add_separation_options(command, options);
     add_report_options(command, options, "pair,toi, invalid pairs with nan");
     command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots")
-        ->excludes("--proof");
+        ->excludes("--proof")
+        ->excludes("--min-separation");
 }
 
 void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs)

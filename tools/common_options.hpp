@@ -39,6 +39,12 @@ struct PairOptions : CommonOptions {
 /// How to search: tolerance, t_max, threads, instruction set, reference.
 void add_search_options(CLI::App& command, CommonOptions& options);
 
+/// A distance to keep instead of contact. After add_search_options.
+void add_separation_options(CLI::App& command, CommonOptions& options);
+
+/// For the line of a report that says what was asked; empty without a minimum separation.
+[[nodiscard]] std::string separation_asked(const Options& options);
+
 /// What to tell: hits, whose description ends in `hits_columns`, json, quiet.
 void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns);
 

@@ -63,8 +63,8 @@ void NarrowPhaseRun::answer(const PairView& pairs, std::size_t first_pair, std::
         if (totals_.first_invalid.size() == most_invalid_named) break;
         totals_.first_invalid.push_back(first_pair + i);
     }
-    // The known answers are for the whole step.
-    if (!truth.empty() && options_.narrow_phase.t_max == 1.0) compare(truth);
+    // The known answers are about touching, in the whole step.
+    if (!truth.empty() && options_.narrow_phase.t_max == 1.0 && options_.narrow_phase.minimum_separation == 0.0) compare(truth);
     if (hits_ != nullptr) hits_->append(contacts_, invalid_, first_pair);
     if (progress_ != nullptr) progress_->advance(pairs.size());
 }
@@ -98,6 +98,7 @@ void NarrowPhaseRun::add(const Summary& part, std::size_t first_pair)
     sum.pairs += part.pairs;
     sum.contacts += part.contacts;
     sum.proven += part.proven;
+    sum.at_start += part.at_start;
     sum.odd += part.odd;
     sum.even += part.even;
     sum.invalid += part.invalid;

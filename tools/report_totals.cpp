@@ -57,11 +57,13 @@ std::string text_report(const PairOptions& options, const Question& question, co
     line(kind_name(options.kind), question.source);
     line("asked", fmt::format("t in [0, {}], tolerance {}{}{}", options.narrow_phase.t_max, options.narrow_phase.tolerance,
                               options.narrow_phase.reference ? ", certified search on every pair" : "",
-                              options.narrow_phase.exact ? ", exact verdict" : ""));
+                              options.narrow_phase.exact ? ", exact verdict" : "") +
+                      separation_asked(options.narrow_phase));
     line("pairs", with_commas(sum.pairs));
     line("contacts", with_commas(sum.contacts) + share(sum.contacts, sum.pairs));
     line("  proven", with_commas(sum.proven));
     line("  possible", with_commas(sum.contacts - sum.proven));
+    if (options.narrow_phase.minimum_separation > 0.0) line("  at the start", with_commas(sum.at_start));
     if (options.parity) {
         line("  odd", with_commas(sum.odd));
         line("  even", with_commas(sum.even));
@@ -96,6 +98,7 @@ std::string json_report(const PairOptions& options, const Question& question, co
     json["contacts"] = sum.contacts;
     json["proven"] = sum.proven;
     json["possible"] = sum.contacts - sum.proven;
+    json["at_start"] = sum.at_start;
     json["odd"] = options.parity ? Json(sum.odd) : Json(nullptr);
     json["even"] = options.parity ? Json(sum.even) : Json(nullptr);
     json["invalid"] = sum.invalid;
@@ -114,6 +117,8 @@ std::string json_report(const PairOptions& options, const Question& question, co
     json["t_max"] = options.narrow_phase.t_max;
     json["reference"] = options.narrow_phase.reference;
     json["exact"] = options.narrow_phase.exact;
+    json["minimum_separation"] = options.narrow_phase.minimum_separation;
+    json["distance_tolerance"] = options.narrow_phase.distance_tolerance;
     json["scalar_pairs"] = sum.scalar_pairs;
     // File names need not be UTF-8, JSON has to be.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -66,6 +66,18 @@ Box swept_box(const Step& step, std::span<const std::int32_t> vertices)
     return box;
 }
 
+/// All that may come closer to what is in the box than `separation`, and never less for rounding.
+Box grown(Box box, double separation)
+{
+    if (separation == 0) return box;
+    constexpr double largest = std::numeric_limits<double>::max();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = std::max(std::nextafter(box.low[axis] - separation, -HUGE_VAL), -largest);
+        box.high[axis] = std::min(std::nextafter(box.high[axis] + separation, HUGE_VAL), largest);
+    }
+    return box;
+}
+
 template <class VerticesOf>
 std::vector<Box> swept_boxes(const Step& step, std::size_t count, const VerticesOf& vertices_of)
 {
@@ -162,7 +174,7 @@ void find_vertex_face(const Step& step, const VertexFaceSink& sink)
         const auto vertex = static_cast<std::int32_t>(query);
         const Box box = swept_box(step, std::span(&vertex, 1));
         if (!is_finite(box)) return {};
-        const std::span<std::int32_t> found = faces.overlapping(box, -1, scratch);
+        const std::span<std::int32_t> found = faces.overlapping(grown(box, step.separation), -1, scratch);
         const auto is_own = [&](std::int32_t face) {
             const std::int32_t* const corners = &step.faces[3 * static_cast<std::size_t>(face)];
             return corners[0] == vertex || corners[1] == vertex || corners[2] == vertex;
@@ -187,7 +199,7 @@ void find_edge_edge(const Step& step, const EdgeEdgeSink& sink)
     const auto find = [&](std::size_t query, BoxTree::Scratch& scratch) -> std::span<std::int32_t> {
         if (!is_finite(boxes[query])) return {};
         const std::span<std::int32_t> found =
-            edges.overlapping(boxes[query], static_cast<std::int32_t>(query), scratch);
+            edges.overlapping(grown(boxes[query], step.separation), static_cast<std::int32_t>(query), scratch);
         const Edge& a = step.edges[query];
         const auto is_neighbour = [&](std::int32_t other) {
             const Edge& b = step.edges[static_cast<std::size_t>(other)];

@@ -3,7 +3,8 @@
 // A primitive's box is the smallest axis-aligned box around its vertices at both frames; linear
 // motion keeps the primitive inside it. Candidates are exactly the pairs whose boxes, closed and
 // not inflated, overlap on all three axes in double precision (minima, maxima and comparisons do
-// not round), except
+// not round), or, with a separation, would if one of the two were grown by that much and rounded
+// outward, except
 //   vertex-face  pairs of a face and one of its own vertices,
 //   edge-edge    pairs of edges with a common vertex.
 // Primitives with a coordinate that is not finite at either frame have no box and are in no
@@ -29,6 +30,7 @@ struct Step {
     std::span<const double> positions1;   ///< n x 3, row-major, at t = 1
     std::span<const std::int32_t> faces;  ///< m x 3, row-major, indices in [0, n)
     std::span<const Edge> edges;          ///< indices in [0, n); see unique_edges
+    double separation = 0;                ///< pairs that may come as close are candidates too
 };
 
 /// Receives the next candidates. Pieces hold at most a few million candidates where the mesh is

@@ -68,6 +68,7 @@ void add_sums(Json& json, const KindTotals& totals)
     json["contacts"] = totals.contacts;
     json["proven"] = totals.proven;
     json["possible"] = totals.contacts - totals.proven;
+    json["at_start"] = totals.at_start;
     json["earliest"] = json_contact(totals.earliest);
     json["broad_phase_seconds"] = totals.broad_seconds;
     json["broad_phase_candidates_per_second"] = rate(totals.candidates, totals.broad_seconds);
@@ -100,7 +101,8 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
                              with_commas(totals.faces), with_commas(totals.edges)));
     line("asked", fmt::format("t in [0, {}] of every step, tolerance {}{}{}", asked.t_max, asked.tolerance,
                               asked.reference ? ", certified search on every pair" : "",
-                              asked.exact ? ", exact verdict" : ""));
+                              asked.exact ? ", exact verdict" : "") +
+                      separation_asked(asked));
 
     fmt::format_to(std::back_inserter(out), "\n{:>5} {:<4} {:>13} {:>11} {:>9} {:>9} {:>9}  {}\n", "step", "kind",
                    "candidates", "contacts", "broad, s", "narrow, s", "M pairs/s", "earliest contact");
@@ -126,6 +128,7 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
     line("all", fmt::format("{} contacts in {} candidates", with_commas(all.contacts), with_commas(all.candidates)));
     line("  proven", with_commas(all.proven));
     line("  possible", with_commas(all.contacts - all.proven));
+    if (asked.minimum_separation > 0.0) line("  at the start", with_commas(all.at_start));
     if (all.earliest) {
         line("earliest", fmt::format("toi {:.17g} in step {}, {}", all.earliest->toi, all.earliest->step,
                                      what_touches(*all.earliest)));
@@ -165,6 +168,8 @@ std::string scene_json_report(const SceneOptions& options, const SceneTotals& to
     json["t_max"] = asked.t_max;
     json["reference"] = asked.reference;
     json["exact"] = asked.exact;
+    json["minimum_separation"] = asked.minimum_separation;
+    json["distance_tolerance"] = asked.distance_tolerance;
     json["steps"] = Json::array();
     for (std::size_t number = 0; number < totals.steps.size(); ++number) {
         const StepTotals& step = totals.steps[number];

@@ -157,6 +157,7 @@ private:
         totals.candidates += piece.size();
         totals.contacts += contacts_.size();
         totals.proven += summary.proven;
+        totals.at_start += summary.at_start;
         totals.scalar_pairs += summary.scalar_pairs;
         if (hits_ != nullptr) {
             for (const Contact& contact : contacts_) {
@@ -210,7 +211,8 @@ SceneTotals answer_steps(const SceneOptions& options)
 
     for (std::size_t step_number = 0; step_number < frames.step_count(); ++step_number) {
         read_start = Clock::now();
-        const Step step = frames.next_step();
+        Step step = frames.next_step();
+        step.separation = options.common.narrow_phase.minimum_separation;
         totals.read_seconds += seconds_since(read_start);
         totals.steps.push_back(run.answer(step_number, step));
         note_invalid_vertices(step_number, step, totals);

@@ -28,7 +28,8 @@ struct SceneContact {
 struct KindTotals {
     std::size_t candidates = 0;
     std::size_t contacts = 0;
-    std::size_t proven = 0;  ///< Of the contacts.
+    std::size_t proven = 0;    ///< Of the contacts.
+    std::size_t at_start = 0;  ///< Of the contacts: closer than a minimum separation from the start.
     std::size_t scalar_pairs = 0;
     std::optional<SceneContact> earliest;  ///< Of the first step that has any.
     double broad_seconds = 0;              ///< Finding the candidates.
@@ -73,6 +74,7 @@ struct SceneTotals {
     return {.candidates = a.candidates + b.candidates,
             .contacts = a.contacts + b.contacts,
             .proven = a.proven + b.proven,
+            .at_start = a.at_start + b.at_start,
             .scalar_pairs = a.scalar_pairs + b.scalar_pairs,
             .earliest = earlier(a.earliest, b.earliest),
             .broad_seconds = a.broad_seconds + b.broad_seconds,

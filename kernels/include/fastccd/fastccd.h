@@ -7,8 +7,8 @@
  * Every function that can fail returns an error, FASTCCD_OK if there is none; fastccd_message() says it in words. Pointers
  * marked "or NULL" may be NULL.
  *
- * Structs begin with `size`, sizeof of the struct as the caller knows it. Later versions only append fields, for which 0 is
- * the default, so that programs and libraries of different age understand each other.
+ * Structs begin with `size`, sizeof of the struct as the caller knows it. Later versions only append fields; those that
+ * the caller does not know have their defaults, so that programs and libraries of different age understand each other.
  */
 #ifndef FASTCCD_H
 #define FASTCCD_H
@@ -34,6 +34,9 @@ enum fastccd_error {
     FASTCCD_INDEX_OUT_OF_RANGE = 7,  /* see fastccd_fault */
     FASTCCD_INVALID_PAIR = 8,        /* a NaN or an infinity in a pair, in a call that cannot leave it out; see fastccd_fault */
     FASTCCD_OUT_OF_MEMORY = 9,       /* or the system refused a thread; outputs are unspecified */
+    FASTCCD_BAD_MINIMUM_SEPARATION = 10, /* minimum_separation is negative, infinite or not a number */
+    FASTCCD_BAD_DISTANCE_TOLERANCE = 11, /* distance_tolerance is negative, infinite or not a number */
+    FASTCCD_EXACT_SEPARATION = 12,       /* `exact` together with a minimum separation */
     FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, or a struct whose size is not set */
 };
 
@@ -60,6 +63,8 @@ typedef struct fastccd_options {
     int32_t reference; /* not 0: the certified search alone, slower, the same bits */
     int32_t exact;     /* not 0: settle possible contacts by rational arithmetic */
     int32_t reserved;  /* 0 */
+    double minimum_separation; /* d > 0: contact is a distance of at most d: 0 */
+    double distance_tolerance; /* then: at most (1 + distance_tolerance) d counts as contact: 1e-6 */
 } fastccd_options;
 
 /* A mesh that moves linearly over the step. */
@@ -78,7 +83,7 @@ typedef struct fastccd_contact {
     size_t pair;    /* index of the pair in the input */
     double toi;     /* lower bound of its first time of contact */
     int32_t proven; /* 1: there is contact, certainly; 0: contact is not excluded, to within rounding */
-    int32_t reserved;
+    int32_t at_start; /* 1: within the minimum separation, if there is one, at t = 0 already */
 } fastccd_contact;
 
 /* Set `size` before the call. */
@@ -89,6 +94,7 @@ typedef struct fastccd_summary {
     double earliest_toi;  /* INFINITY: none */
     int32_t isa;          /* kernels that ran */
     int32_t reserved;
+    size_t at_start;      /* contacts within the minimum separation, if there is one, at t = 0 already */
 } fastccd_summary;
 
 /* Set `size` before the call. */

@@ -31,6 +31,9 @@ namespace fastccd {
 /// toi[i]: lower bound of the first time of contact of pair i in [0, t_max]; +infinity: certainly
 /// apart throughout; NaN: a coordinate of the pair is NaN or infinite. `toi` has one element per pair.
 ///
+/// With Options::minimum_separation d > 0, here and below, contact is a distance of at most d: toi is 0 exactly for the
+/// pairs that are not certainly farther apart at t = 0, and no roots are counted.
+///
 /// `roots`, when not empty, has one element per pair and gets the number of roots of the
 /// coplanarity cubic (paper, eq. 5 and 12) in [0, t_max] at which there is contact, a tangential
 /// root counting as 2; 0 for no contact and for contacts whose roots cannot be counted (the motion

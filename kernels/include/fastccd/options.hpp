@@ -40,6 +40,13 @@ struct Options {
     /// at least). Costs tens of microseconds and allocations for each such pair. Needs a build with GMP, which ends the
     /// program if memory runs out.
     bool exact = false;
+    /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
+    /// which they are as close; pairs within d at the start have toi 0 (Contact::at_start), all others in contact a positive one.
+    /// Finite, in units of the coordinates. Not together with `exact`; contact roots are not counted.
+    double minimum_separation = 0.0;
+    /// With minimum_separation d: a pair counts as in contact once its distance is at most (1 + distance_tolerance) d
+    /// (rounding: README), which keeps the work bounded for pairs that graze. Finite, at least 0.
+    double distance_tolerance = 1e-6;
 };
 
 /// One contact of a compact result.
@@ -47,8 +54,11 @@ struct Contact {
     std::size_t pair;  ///< Index of the pair in the input.
     double toi;        ///< Lower bound of its first time of contact, in [0, t_max].
     /// There is contact, certainly: the cubic changes sign beyond rounding around toi while inclusion holds, or
-    /// Options::exact has settled it. Otherwise contact is not excluded, to within rounding.
+    /// Options::exact has settled it; with a minimum separation, the pair certainly comes as close at toi or later.
+    /// Otherwise contact is not excluded, to within rounding or distance_tolerance.
     bool proven = false;
+    /// With a minimum separation: the pair is not certainly farther apart than that at t = 0.
+    bool at_start = false;
 };
 
 /// Totals of one call.
@@ -56,6 +66,7 @@ struct Summary {
     std::size_t pairs = 0;         ///< Pairs asked about.
     std::size_t contacts = 0;      ///< Pairs reported in contact.
     std::size_t proven = 0;        ///< Of these, the proven ones; see Contact.
+    std::size_t at_start = 0;      ///< Of these, the ones closer than a minimum separation from the start.
     std::size_t odd = 0;           ///< Contacts at an odd number of roots, when roots were asked for.
     std::size_t even = 0;          ///< Contacts at an even number of roots, when roots were asked for.
     std::size_t invalid = 0;       ///< Pairs with a NaN or an infinity.
@@ -76,6 +87,9 @@ enum class Error : std::uint8_t {
     index_out_of_range,    ///< an index of pair `pair` points outside its array.
     invalid_pair,          ///< pair `pair` has a NaN or an infinity, in a call that cannot leave it out.
     out_of_memory,         ///< an allocation failed, or the system refused a thread; outputs are unspecified.
+    bad_minimum_separation,  ///< minimum_separation is negative, infinite or not a number.
+    bad_distance_tolerance,  ///< distance_tolerance is negative, infinite or not a number.
+    exact_separation,        ///< options.exact together with a minimum separation.
 };
 
 /// Outcome of a call: `error` and, where one pair is at fault, its number and the index it holds.

@@ -17,8 +17,9 @@ struct PairToi {
     /// As in the dense answer: lower bound of the first time of contact in [0, t_max]; +infinity: certainly apart; NaN: a
     /// coordinate is NaN or infinite, or there is an error.
     double toi = std::numeric_limits<double>::quiet_NaN();
-    bool proven = false;  ///< See Contact::proven.
-    Status status;        ///< bad_tolerance, bad_t_max, exact_unavailable.
+    bool proven = false;    ///< See Contact::proven.
+    bool at_start = false;  ///< See Contact::at_start.
+    Status status;          ///< An error in the options.
 };
 
 /// Four points at t = 0, `x0`, and at t = 1, `x1`; the first is the vertex, the others are the face (paper, section 4).

@@ -46,14 +46,16 @@ private:
 
 /// True if the pair touches within [0, t_max]; toi is then a lower bound of the first time, less than `distance` of motion
 /// before it, to within rounding; otherwise toi is +infinity. These interfaces have no other way to name what cannot be
-/// answered: throws std::invalid_argument for a minimum separation other than 0, t_max outside [0, 1], a distance that is
-/// not positive, and coordinates that are not finite.
+/// answered: throws std::invalid_argument for a minimum separation that is negative or not finite, t_max outside [0, 1], a
+/// distance that is not positive, and coordinates that are not finite.
 inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
 {
-    if (minimum_separation != 0.0) throw std::invalid_argument("fastccd: minimum separation is not supported, pass 0");
+    if (!(minimum_separation >= 0.0) || std::isinf(minimum_separation))
+        throw std::invalid_argument("fastccd: the minimum separation must be finite and at least 0");
     if (!(t_max >= 0.0 && t_max <= 1.0)) throw std::invalid_argument("fastccd: t_max must be in [0, 1]");
     if (!(distance > 0.0)) throw std::invalid_argument("fastccd: the tolerance must be positive");
     Options options;
+    options.minimum_separation = minimum_separation;
     const double displacement = pair.largest_displacement(kind);
     options.tolerance = std::clamp(distance / displacement, std::numeric_limits<double>::min(), 1.0);
     if (!(displacement > 0.0)) options.tolerance = 1.0;

@@ -2,7 +2,7 @@
 // forward to it, or use it in its place. What differs:
 //
 // - toi is the certified lower bound itself: no conservative rescaling. Whoever wants a margin multiplies.
-// - `min_distance` must be 0. This, a tmax outside [0, 1], points of other than 2 or 3 coordinates, a tolerance that is not
+// - With a `min_distance`, toi = 0 means that the pair is within it at the start. One that is negative, a tmax outside [0, 1], points of other than 2 or 3 coordinates, a tolerance that is not
 //   positive, and coordinates that are not finite are std::invalid_argument.
 #pragma once
 

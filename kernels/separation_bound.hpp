@@ -1,0 +1,82 @@
+// Rounding of the search with a minimum separation d (separation_certificate.hpp), in multiples of u = 2^-53, and what
+// a call asks of it.
+//
+// Notation as in error_bound.hpp: X, Y, Z are the extents of the pair, and a computed component of r_i along x errs by
+// at most rho u X at an end of the searched interval. n is whatever vector was computed, taken as exact, because every
+// vector gives a valid certificate; S = |n_x| X + |n_y| Y + |n_z| Z. Bounds are multiples of u S. S itself is computed
+// within 3 u and multiplied twice; this and terms in u^2 are covered by `slack`, since every constant is below 2^6.
+#pragma once
+
+#include <fastccd/options.hpp>
+
+#include <error_bound.hpp>
+
+namespace fastccd {
+
+/// Added to a bound against products that underflow. Directions are unit vectors and the largest extent is above 2^-62
+/// (see smallest_separation_extent), so this is below 2^-900 of anything that counts; a height is a sum of three products,
+/// each off by 2^-1075 at most, of components that scaling to the lanes' range may have moved by as much.
+inline constexpr double separation_floor = 0x1p-1020;
+
+/// Extents for which no product below leaves the range of double: the largest is the square of a height along a
+/// normal, the product of two sides, times the square of a distance, below 2^(8 60 + 20). Pairs beyond are scaled by a
+/// power of two, the same on all axes and for d, by the scalar search; lanes leave them to it.
+inline constexpr double smallest_separation_extent = 0x1p-60;
+inline constexpr double largest_separation_extent = 0x1p60;
+
+struct SeparationBounds {
+    static constexpr double u = ErrorBounds::u;
+    static constexpr double slack = 2.0;
+
+    explicit constexpr SeparationBounds(double rho_) : rho{rho_} {}
+
+    double rho;
+
+    /// A height n . r_i at an end, or, edge-edge, the difference of two; times S. A product with a component errs by
+    /// (rho + 1) u, the two sums by 2 u more: rho + 3. A difference of two doubles that and rounds, by u 2 S: 2 rho + 8.
+    [[nodiscard]] FASTCCD_INLINE constexpr double height(PairKind kind) const
+    {
+        return ((kind == PairKind::vertex_face ? rho + 3 : 2 * rho + 8) + slack) * u;
+    }
+
+    /// The same at a time in between, where components are interpolated (rho + 3): rho + 6 and 2 rho + 14. For the sum of
+    /// two, of n at one time and r at another, times S + S': the rounding of the sum adds 1, or 2 for differences.
+    [[nodiscard]] FASTCCD_INLINE constexpr double height_at(PairKind kind) const
+    {
+        return ((kind == PairKind::vertex_face ? rho + 7 : 2 * rho + 16) + slack) * u;
+    }
+
+    /// A gap along a coordinate axis at an end; times the extent along it. Two components, and their difference: 2 rho + 2.
+    [[nodiscard]] FASTCCD_INLINE constexpr double axis() const { return (2 * rho + 2 + slack) * u; }
+
+    /// The length of a computed vector between two points, one of each primitive, over the distance of the primitives;
+    /// times X + Y + Z. Interpolated components err by rho + 3. Edge-edge, r2 + t (r3 - r2) - s r1: a side by
+    /// 2 (rho + 3) + 2, its multiple by 2 more, the sums by 3 and 4, the multiple of r1 by rho + 4:
+    /// (rho + 3) + (2 rho + 10) + (rho + 4) + 7 = 4 rho + 24. A point on a side of a face takes less; one inside, the
+    /// mean of the corners with weights whose sum is within 4 u of 1: (rho + 3) + 4 + 4. The length errs by 3 u more of
+    /// at most 3 (X + Y + Z): + 9.
+    [[nodiscard]] FASTCCD_INLINE constexpr double distance() const { return (4 * rho + 33 + slack) * u; }
+};
+
+/// What a call asks for. All distances are in units of the coordinates.
+struct SeparationParameters {
+    double distance;   ///< d; 0: contact itself, which is another search.
+    double threshold;  ///< A gap along a computed unit vector above this proves a distance above d.
+    double stop;       ///< Closer than this is close enough to be reported.
+    double aim;        ///< Halfway to there.
+    double certain;    ///< A computed distance up to this is certainly at most d.
+
+    /// Computed unit vectors are longer than 1 by at most 5 u: the square errs by 3 u, its root by 2.5 u, the
+    /// reciprocal and the product with it add 2 u. The multiplication here, and sums of a threshold and a bound, add 3 u.
+    FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double tolerance = 0.0)
+        : distance{d}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance}, aim{d + d * (0.5 * tolerance)},
+          certain{d * (1.0 - 0x1p-49)}
+    {
+    }
+
+    /// A pair is also reported where its computed distance exceeds d by this times X + Y + Z, so that no search goes on
+    /// where rounding decides.
+    static constexpr double resolution = 128 * ErrorBounds::u;
+};
+
+}  // namespace fastccd

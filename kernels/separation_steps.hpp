@@ -1,0 +1,149 @@
+// The search for the first time at which a pair comes within d, step by step.
+//
+// The search walks along the time axis. At the time it has got to it looks at the pair, and goes on to the end of the
+// reach of the vector between the primitives: conservative advancement along a fixed direction, hence Newton's method where
+// the primitives approach. It begins with a look at the middle of the interval, whose reach is all of it for most
+// pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they turn, a fixed
+// vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
+// looks ahead, and tries the vectors at both ends of an interval together. It looks ahead to where the last two distances
+// let expect contact (the secant method), and, after some looks, as far as has gone well.
+//
+// This is the definition of the result. Every step is a function of the pair alone, in the same operations in every lane
+// type, so lanes and the scalar search come to the same time, bit for bit.
+#pragma once
+
+#include <search_parameters.hpp>
+#include <separation_certificate.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// A pair on its way, lane by lane.
+template <class L>
+struct SeparationRecord {
+    RelativeMotion<L> r;
+    Extents<L> extents;
+    L pair;                     ///< Index in the tile, as a double.
+    L time;                     ///< Farther than d before this time, and at it if it is positive.
+    L window_low, window_high;  ///< Farther than d between these, too.
+    L looks;                    ///< How often the pair has been looked at.
+    L purpose;                  ///< Of the next look: one of those below.
+    L at;                       ///< Time of the next look.
+    // While looking ahead:
+    Vector3<L> n;  ///< Vector at `time`,
+    L high;        ///< how far it reaches,
+    L interval;    ///< and the time to look ahead at most; 0: any.
+    L last_time, last_distance;  ///< The last time the search had got to, and the distance then.
+};
+
+/// Purposes of a look: to go on from `time`; to go on from there to `at` while turning; to prove contact found at `time`.
+inline constexpr double going_on = 0.0, looking_ahead = 1.0, proving = 2.0;
+
+/// Looks after which the search looks ahead even where the distance does not fall, and how far at least: that many times
+/// the reach of the vector at `time`.
+inline constexpr double most_plain_looks = 8, first_stretch = 8;
+
+/// Contact at `time` is to be proven when that many times the reach of the vector at `time` has passed. That reaches about to
+/// contact, less where the primitives turn; within so short a time they do not pass through each other.
+inline constexpr double proof_stretch = 32;
+
+/// Hard cap on the looks at one pair; on reaching it the time reached is the answer: contact.
+inline constexpr double most_looks = 4096;
+
+/// Where a step that ends at `time` leads: over the window, if it begins before.
+template <class L>
+FASTCCD_INLINE L past_window(const SeparationRecord<L>& pair, L time)
+{
+    return select<L>(less(pair.window_low, time), max(time, pair.window_high), time);
+}
+
+/// The look at the middle. True where it proves that the pair stays farther than d.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const SearchParameters& parameters)
+{
+    const SeparationBounds bounds{parameters.bounds.rho};
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    const Reach<L> reach = look<kind>(pair.r, pair.extents, broadcast<L>(0.5), parameters.separation, bounds).reach;
+    pair.window_low = reach.low;
+    pair.window_high = reach.high;
+    pair.time = select<L>(less(reach.low, zero), max(reach.high, zero), zero);
+    pair.looks = one;
+    pair.purpose = broadcast<L>(going_on);
+    pair.at = pair.time;
+    pair.n = {zero, zero, zero};
+    pair.high = pair.interval = pair.last_time = pair.last_distance = zero;
+    return less_equal(one, pair.time);
+}
+
+/// What a step has shown. Lanes in neither farther nor contact go on.
+template <class L>
+struct StepOutcome {
+    LaneMask<L> farther;  ///< Than d until the end, or until after `limit`, if nothing later is wanted.
+    LaneMask<L> contact;  ///< At `time`.
+    LaneMask<L> proven;   ///< Of these, the certain ones.
+};
+
+/// One look, and what follows from it.
+template <PairKind kind, class L>
+FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParameters& parameters, double limit)
+{
+    const SeparationParameters& wanted = parameters.separation;
+    const SeparationBounds bounds{parameters.bounds.rho};
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    const Sight<L> sight = look<kind>(pair.r, pair.extents, pair.at, wanted, bounds);
+    pair.looks = pair.looks + one;
+
+    const LaneMask<L> to_prove = less_equal(broadcast<L>(proving), pair.purpose);
+    const LaneMask<L> was_ahead = less_equal(broadcast<L>(looking_ahead), pair.purpose) & !to_prove;
+    LaneMask<L> turned = was_ahead;
+    if (Lane<L>::bits(was_ahead) != 0)
+        turned = was_ahead & farther_while_turning<kind>(pair.r, pair.extents, pair.n, pair.time, sight.n, pair.at, wanted, bounds);
+    const LaneMask<L> too_far = was_ahead & !turned;
+
+    // The look is at the time reached, but for a look too far ahead.
+    const LaneMask<L> here = !(to_prove | too_far);
+    const L time = select<L>(here, pair.at, pair.time);
+    const L high = select<L>(here, sight.reach.high, pair.high);
+    const L next = past_window(pair, high);
+    const LaneMask<L> certified = here & less(sight.reach.low, time) & less(time, high);
+    const LaneMask<L> farther = (certified & less_equal(one, next)) | (turned & less_equal(one, time)) |
+                                (here & less(broadcast<L>(limit), time));
+    const LaneMask<L> at_start = here & !certified & less_equal(time, zero);
+
+    // At time 0 a pair that is farther than d gets a positive time, however close it is.
+    const L size = sum(pair.extents);
+    const L close = broadcast<L>(wanted.stop) + broadcast<L>(SeparationParameters::resolution) * size;
+    const LaneMask<L> near = certified & less(zero, time) & less_equal(sight.distance, close);
+    const LaneMask<L> advancing = certified & !near & less(time * broadcast<L>(1.0 + 0x1p-50), next) &
+                                  less(pair.looks, broadcast<L>(most_looks));
+    const LaneMask<L> found = here & !(advancing | at_start);
+
+    const L reach = high - time;
+    const L doubled = select<L>(turned, pair.interval + pair.interval, pair.interval);
+    const LaneMask<L> stretching = less(broadcast<L>(most_plain_looks), pair.looks);
+    const L interval = select<L>(stretching & less(doubled, reach + reach), broadcast<L>(first_stretch) * reach, doubled);
+    // Where the distance falls, the line through the last two times and distances tells when it will be close.
+    const L aim = broadcast<L>(wanted.aim) + broadcast<L>(0.5 * SeparationParameters::resolution) * size;
+    const L fall = pair.last_distance - sight.distance;
+    const LaneMask<L> falling = less(zero, fall);
+    const L until_close = (sight.distance - aim) * ((time - pair.last_time) / fall);
+    const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
+    const L ahead = min(time + span, one);
+    const LaneMask<L> look_ahead = advancing & (stretching | (falling & less(reach, span))) & less(next, ahead);
+    const L later = min(time + select<L>(near, broadcast<L>(proof_stretch) * reach, broadcast<L>(parameters.leaf_width)), one);
+
+    pair.n = sight.n;
+    pair.high = high;
+    pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), interval);
+    pair.last_time = select<L>(here, time, pair.last_time);
+    pair.last_distance = select<L>(here, sight.distance, pair.last_distance);
+    pair.time = select<L>(too_far | (advancing & !look_ahead), next, time);
+    pair.at = select<L>(found, later, select<L>(look_ahead, ahead, pair.time));
+    pair.purpose = select<L>(found, broadcast<L>(proving), select<L>(look_ahead, broadcast<L>(looking_ahead), broadcast<L>(going_on)));
+
+    const LaneMask<L> certain =
+        less_equal(sight.distance, broadcast<L>(wanted.certain) - broadcast<L>(bounds.distance()) * size);
+    const LaneMask<L> contact = to_prove | at_start;
+    return {farther, contact, contact & certain};
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

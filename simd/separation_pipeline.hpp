@@ -1,0 +1,188 @@
+// The stages of a minimum separation over one tile:
+//
+//     block -> coordinate axes -> [separating] -> first look -> [advancing] -> step -> contact or farther
+//                     |                               |           ^              |
+//                     v                               v           +--------------+
+//                  farther                         farther
+//
+// Lanes take the steps of separation_steps.hpp, in the same operations as the scalar search; they leave to it pairs out
+// of range alone. A pair that needs another step goes back to the end of [advancing], from which the next batch is taken,
+// so that batches stay full until the queue runs dry.
+#pragma once
+
+#include <block_source.hpp>
+#include <records.hpp>
+#include <separation_steps.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+template <class Record, class Visit>
+FASTCCD_INLINE void for_each_field(const SeparationQueue&, Record& record, Visit visit)
+{
+    for_each_common_field(record, visit);
+    visit(record.extents.x), visit(record.extents.y), visit(record.extents.z);
+}
+
+template <class Record, class Visit>
+FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit visit)
+{
+    for_each_common_field(record, visit);
+    visit(record.extents.x), visit(record.extents.y), visit(record.extents.z);
+    visit(record.time), visit(record.window_low), visit(record.window_high);
+    visit(record.looks), visit(record.purpose), visit(record.at);
+    visit(record.n.x), visit(record.n.y), visit(record.n.z), visit(record.high), visit(record.interval);
+    visit(record.last_time), visit(record.last_distance);
+}
+
+template <PairKind kind, class L>
+class SeparationPipeline {
+public:
+    static void run_tile(const TileRequest& request, TileScratch& scratch)
+    {
+        SeparationPipeline pipeline{request, scratch};
+        pipeline.prepare();
+        for (std::size_t i = 0; i < request.count; i += block_pairs) {
+            const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
+            const double* block = native_block<kind, L>(request, i, count, scratch);
+            pipeline.prefetcher.at_block(block);
+            for (unsigned lane = 0; lane < count; lane += width) {
+                pipeline.screen(block + lane, static_cast<double>(i + lane), lanes_in_use(request.count - i - lane));
+                if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
+            }
+        }
+        pipeline.look_first(1);
+        pipeline.advance(1);
+        scratch.prefetched = pipeline.prefetcher.prefetched();
+    }
+
+private:
+    static constexpr unsigned width = Lane<L>::width;
+
+    const SearchParameters& parameters;
+    const SeparationBounds bounds;
+    const double limit;
+    TileScratch& scratch;
+    Prefetcher prefetcher;
+
+    FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& s)
+        : parameters{*request.parameters}, bounds{parameters.bounds.rho}, limit{time_limit(request.cutoff)}, scratch{s},
+          prefetcher{*request.source, request.first, s.prefetched}
+    {
+    }
+
+    FASTCCD_INLINE void prepare()
+    {
+        for (std::size_t i = 0; i < tile_pairs; i += width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+        __builtin_memset(scratch.roots, 0, sizeof scratch.roots);
+        __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
+        __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
+        scratch.separating.size = scratch.advancing.size = 0;
+    }
+
+    FASTCCD_INLINE static unsigned lanes_in_use(std::size_t left)
+    {
+        return left >= width ? (1u << width) - 1 : (1u << left) - 1;
+    }
+
+    /// Calls visit(i, lane) for the pairs of the lanes whose bit is set.
+    template <class Visit>
+    FASTCCD_INLINE static void for_each_pair(L pair, unsigned lanes, Visit visit)
+    {
+        alignas(64) double pairs[width];
+        Lane<L>::store(pairs, pair);
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const int lane = __builtin_ctz(lanes);
+            visit(static_cast<unsigned>(pairs[lane]), lane);
+        }
+    }
+
+    FASTCCD_INLINE static void set_bit(std::uint64_t* words, unsigned i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
+
+    FASTCCD_INLINE void leave_undecided(L pair, unsigned lanes)
+    {
+        for_each_pair(pair, lanes, [&](unsigned i, int) FASTCCD_INLINE_LAMBDA { set_bit(scratch.is_undecided, i); });
+    }
+
+    FASTCCD_INLINE void screen(const double* coordinates, double first, unsigned lanes)
+    {
+        SeparationRecord<L> record;
+        record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
+        const LaneMask<L> farther = farther_along_axis<kind>(record.r, parameters.separation, bounds, record.extents);
+        record.pair = broadcast<L>(first) + Lane<L>::lane_number();
+        const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
+        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
+        const unsigned kept = decidable & ~Lane<L>::bits(farther);
+        if (2 * static_cast<unsigned>(__builtin_popcount(kept)) >= width)
+            look_first(record, kept);
+        else if (kept != 0)
+            push(scratch.separating, kept, record);
+    }
+
+    /// Takes a batch from the end of a queue; returns the bits of the lanes that are in use.
+    template <class Queue>
+    FASTCCD_INLINE static unsigned take_last(Queue& queue, SeparationRecord<L>& record)
+    {
+        const unsigned taken = queue.size < width ? queue.size : width;
+        queue.size -= taken;
+        read(queue, queue.size, record);
+        return lanes_in_use(taken);
+    }
+
+    /// The look at the middle, until fewer than `least` pairs are left.
+    void look_first(unsigned least)
+    {
+        SeparationRecord<L> record;
+        while (scratch.separating.size >= least) {
+            prefetcher.lines(2 * width);
+            const unsigned lanes = take_last(scratch.separating, record);
+            look_first(record, lanes);
+        }
+    }
+
+    FASTCCD_INLINE void look_first(SeparationRecord<L>& record, unsigned lanes)
+    {
+        lanes &= ~Lane<L>::bits(first_look<kind>(record, parameters));
+        if (lanes == 0) return;
+        push(scratch.advancing, lanes, record);
+        if (scratch.advancing.size >= AdvancingQueue::drain_at) advance(width);
+    }
+
+    void advance(unsigned least)
+    {
+        SeparationRecord<L> record;
+        while (scratch.advancing.size >= least) {
+            unsigned lanes = take_last(scratch.advancing, record);
+            do {
+                prefetcher.lines(2 * width);
+                const StepOutcome<L> outcome = step<kind>(record, parameters, limit);
+                const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
+                if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
+                lanes &= ~(contact | Lane<L>::bits(outcome.farther));
+                // Moving pairs to fill a batch costs about a fifth of a step.
+            } while (5 * static_cast<unsigned>(__builtin_popcount(lanes)) > 4 * width);
+            if (lanes != 0) push(scratch.advancing, lanes, record);
+        }
+    }
+
+    FASTCCD_INLINE void record_contacts(const SeparationRecord<L>& record, unsigned contact, unsigned proven)
+    {
+        alignas(64) double times[width];
+        Lane<L>::store(times, record.time);
+        for_each_pair(record.pair, contact, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
+            scratch.time[i] = times[lane];
+            set_bit(scratch.reported, i);
+            if ((proven >> lane & 1) == 0) set_bit(scratch.is_unproven, i);
+        });
+    }
+};
+
+template <class L>
+FASTCCD_INLINE void run_separation_tile(const TileRequest& request, TileScratch& scratch)
+{
+    if (request.kind == PairKind::vertex_face)
+        SeparationPipeline<PairKind::vertex_face, L>::run_tile(request, scratch);
+    else
+        SeparationPipeline<PairKind::edge_edge, L>::run_tile(request, scratch);
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

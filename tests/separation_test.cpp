@@ -1,0 +1,316 @@
+// Minimum separation, promise by promise, against exact distances.
+//
+// Never missed, never late: farther than d before toi, or throughout if the pair is not reported. Nothing invented: at toi
+// the exact distance is at most
+//
+//     (1 + distance_tolerance) d + 2^8 u s,   u = 2^-53,
+//
+// s the sum of the extents: per axis the largest |component| of x_i - x_0. Where it comes from: a pair is reported at a time
+// at which its computed distance is at most (1 + distance_tolerance) d + 128 u s (SeparationParameters::resolution), and that
+// errs by at most 75 u s (SeparationBounds::distance).
+//
+// Or because the search cannot go on: no vector computed for the pair proves what is left of the distance, which happens
+// where a face or an angle is nearly degenerate at that moment, or the cap on looks is reached. Such pairs stay within
+// sqrt(u) s = 1.1e-8 s of d here; that bound is measured, not derived.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <separation_search.hpp>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+#include "oracle/exact_ccd.hpp"
+#include "oracle/exact_distance.hpp"
+#include "oracle/exact_separation.hpp"
+#include "test_data.hpp"
+#include "thin_pairs.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
+constexpr double u = 0x1p-53;
+
+/// Sum of the extents.
+mpq_class exact_size(const oracle::Pair& pair)
+{
+    mpq_class sum;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        mpq_class extent;
+        for (std::size_t i = 0; i < 8; ++i) extent = std::max(extent, mpq_class(abs(mpq_class(pair[i][axis]) - mpq_class(pair[i / 4 * 4][axis]))));
+        sum += extent;
+    }
+    return sum;
+}
+
+double size_of(const oracle::Pair& pair) { return exact_size(pair).get_d(); }
+
+struct Found {
+    double toi;
+    bool proven, at_start;
+};
+
+Found search(oracle::Kind kind, const oracle::Pair& pair, const Options& options)
+{
+    std::vector<Contact> contacts;
+    Summary summary;
+    const Status status =
+        find_contacts(pair_kind(kind), PairView::interleaved(pair[0].data(), 1), options, contacts, nullptr, &summary);
+    if (!status.ok()) throw std::runtime_error(message(status.error));
+    EXPECT_EQ(summary.at_start, contacts.empty() ? 0u : static_cast<std::size_t>(contacts[0].at_start));
+    if (contacts.empty()) return {std::numeric_limits<double>::infinity(), false, false};
+    return {contacts[0].toi, contacts[0].proven, contacts[0].at_start};
+}
+
+/// distance - (1 + tolerance) d, in units of s; exact but for the last division.
+double excess(oracle::Kind kind, const oracle::Pair& pair, double time, const Options& options, const mpq_class& size)
+{
+    const mpq_class square = oracle::squared_distance(kind, pair, time);
+    const mpq_class allowed = mpq_class(options.minimum_separation) * (1 + mpq_class(options.distance_tolerance));
+    if (square <= allowed * allowed) return 0.0;
+    // In units of s first: squares of large coordinates have no double.
+    const mpq_class relative = square / (size * size), threshold = allowed / size;
+    const mpf_class root = sqrt(mpf_class(relative, 512)) - mpf_class(threshold, 512);
+    return root.get_d();
+}
+
+std::string in_short(double number)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", number);
+    return text;
+}
+
+struct Counts {
+    std::size_t pairs = 0, reported = 0, proven = 0, at_start = 0, not_shown = 0, thin = 0;
+    double worst = 0, worst_thin = 0;
+
+    void report(const char* what) const
+    {
+        std::printf("%-34s %zu pairs, %zu reported, %zu proven, %zu at the start, beyond d at most %.3g u s; thin %zu: %.3g sqrt(u) s; not shown %zu\n",
+                    what, pairs, reported, proven, at_start, worst / u, thin, worst_thin / std::sqrt(u), not_shown);
+    }
+};
+
+void check(oracle::Kind kind, const oracle::Pair& pair, const Options& options, Counts& counts)
+{
+    const mpq_class size = exact_size(pair);
+    const double d = options.minimum_separation;
+    const Found found = search(kind, pair, options);
+    const auto what = [&] { return std::string(kind_name(kind)) + " d " + in_short(d) + ": " + lossless(pair); };
+    ++counts.pairs;
+    const bool reported = std::isfinite(found.toi);
+    EXPECT_EQ(found.at_start, found.toi == 0.0) << what();
+    if (!found.at_start) {
+        const double until = reported ? found.toi : options.t_max;
+        const oracle::Farther farther = oracle::farther_throughout(kind, pair, d, 0.0, until);
+        EXPECT_NE(farther, oracle::Farther::closer) << (reported ? "late: " : "missed: ") << what();
+        counts.not_shown += farther == oracle::Farther::not_shown;
+    }
+    if (!reported) return;
+    ++counts.reported;
+    counts.proven += found.proven;
+    counts.at_start += found.at_start;
+    EXPECT_LE(found.toi, options.t_max);
+    if (found.proven) {
+        EXPECT_NE(oracle::farther_throughout(kind, pair, d, found.toi, options.t_max), oracle::Farther::certainly) << "not proven: " << what();
+    }
+    if (sgn(size) == 0) return;
+    const double beyond = excess(kind, pair, found.toi, options, size);
+    if (beyond > 0x1p8 * u) {
+        ++counts.thin;
+        counts.worst_thin = std::max(counts.worst_thin, beyond);
+    } else {
+        counts.worst = std::max(counts.worst, beyond);
+    }
+}
+
+const double thin_bound = std::sqrt(u);
+
+bool well_shaped(const std::string& family)
+{
+    for (const char* clear : {"uniform", "scale", "big_offset", "common_velocity", "near_interior"})
+        if (family == clear || family == std::string("f32_") + clear) return true;
+    return false;
+}
+
+void expect_close(const std::string& what, const Counts& counts)
+{
+    counts.report(what.c_str());
+    EXPECT_LE(counts.worst_thin, thin_bound) << what;
+    EXPECT_EQ(counts.not_shown, 0u) << what << ": the check gave up";
+}
+
+Options options_for(double d, double t_max = 1.0, double distance_tolerance = 1e-6)
+{
+    Options options;
+    options.minimum_separation = d;
+    options.t_max = t_max;
+    options.distance_tolerance = distance_tolerance;
+    return options;
+}
+
+/// Of all families, relative to the size of each pair.
+void check_families(double relative, double t_max, double distance_tolerance, std::size_t per_family, std::uint64_t seed)
+{
+    Counts well, hard;
+    for (const auto kind : kinds)
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, seed, per_family, pairs);
+            for (const oracle::Pair& pair : pairs) {
+                const double d = relative * size_of(pair);
+                if (d > 0.0 && std::isfinite(d)) check(kind, pair, options_for(d, t_max, distance_tolerance), well_shaped(family) ? well : hard);
+            }
+        }
+    const std::string what = "d " + in_short(relative) + " s, t_max " + in_short(t_max) + ", within " + in_short(distance_tolerance);
+    expect_close(what, hard);
+    expect_close(what + ", shapely", well);
+    EXPECT_EQ(well.thin, 0u) << what;
+    EXPECT_GT(hard.reported, t_max < 0.1 ? 100u : hard.pairs / 3) << what;
+}
+
+TEST(Separation, MadePairs)
+{
+    for (const double relative : {1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0}) check_families(relative, 1.0, 1e-6, 40, 111);
+}
+
+TEST(Separation, ShorterSteps)
+{
+    for (const double t_max : {0.7, 1.0 - 0x1p-53, 1e-3})
+        for (const double relative : {1e-9, 1e-3}) check_families(relative, t_max, 1e-6, 10, 112);
+}
+
+TEST(Separation, DistanceTolerances)
+{
+    for (const double distance_tolerance : {0.0, 1e-12, 1e-2, 1.0})
+        for (const double relative : {1e-9, 1e-2}) check_families(relative, 1.0, distance_tolerance, 10, 113);
+}
+
+/// d far below and far above the motion, up to the ends of double.
+TEST(Separation, ExtremeDistances)
+{
+    for (const double d : {0x1p-1074, 1e-300, 1e-30, 1e30, 1e300, std::numeric_limits<double>::max()}) {
+        Counts counts;
+        for (const auto kind : kinds)
+            for (const std::string& family : families()) {
+                std::vector<oracle::Pair> pairs;
+                generate(family, kind, 114, 10, pairs);
+                for (const oracle::Pair& pair : pairs)
+                    check(kind, pair, options_for(d), counts);
+            }
+        expect_close("d " + in_short(d), counts);
+    }
+}
+
+/// Coordinates whose differences overflow, and others that vanish beside them.
+TEST(Separation, ExtremeCoordinates)
+{
+    Counts counts;
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs;
+        generate("uniform", kind, 115, 40, pairs);
+        for (const oracle::Pair& pair : pairs)
+            for (const double scale : {1e-320, 1e-300, 1e-200, 1e200, 8e307})
+                for (const bool flat : {false, true}) {
+                    oracle::Pair scaled = pair;
+                    for (auto& point : scaled)
+                        for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = (axis == 2 && flat ? 1e-10 : 2.0) * (point[axis] - 0.5) * scale;
+                    for (const double relative : {1e-6, 0.1})
+                        if (const double d = relative * scale; d > 0.0) check(kind, scaled, options_for(d), counts);
+                }
+    }
+    counts.report("extreme coordinates");
+    EXPECT_LE(counts.worst_thin, thin_bound);
+    EXPECT_EQ(counts.not_shown, 0u);
+}
+
+TEST(Separation, ThinPairs)
+{
+    for (const double relative : {1e-12, 1e-6, 1e-3}) {
+        Counts counts;
+        for (const auto kind : kinds)
+            for (const oracle::Pair& pair : testing::ThinPairs{kind, 116}.next(1500)) check(kind, pair, options_for(relative * size_of(pair)), counts);
+        expect_close("thin pairs, d " + in_short(relative) + " s", counts);
+    }
+}
+
+/// As d goes to 0, every contact stays, and no later than at distance 0.
+TEST(Separation, KeepsEveryContactOfDistanceZero)
+{
+    std::size_t contacts = 0;
+    for (const auto kind : kinds)
+        for (const std::string& family : families()) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 117, 100, pairs);
+            for (const double d : {0x1p-1074, 1e-12, 1e-3}) {
+                const Answer found = answer(kind, interleaved(pairs), options_for(d));
+                for (std::size_t i = 0; i < pairs.size(); ++i) {
+                    const oracle::Verdict truth = oracle::exact_ccd(kind, pairs[i]);
+                    if (!truth.contact) continue;
+                    ++contacts;
+                    EXPECT_LE(found.toi[i], truth.t_hi) << family << ' ' << d << ' ' << lossless(pairs[i]);
+                }
+            }
+        }
+    EXPECT_GT(contacts, 10000u);
+}
+
+TEST(Separation, KeepsEveryContactOfPublicData)
+{
+    const auto data = data_directory();
+    if (!data) GTEST_SKIP() << no_data_message;
+    std::size_t contacts = 0;
+    for (const QuerySet& set : load_hardcases(*data))
+        for (const double d : {1e-300, 1e-9, 1e-3}) {
+            const Answer found = answer(set.kind, interleaved(set.pairs), options_for(d));
+            for (std::size_t i = 0; i < set.pairs.size(); ++i) {
+                if (set.truth[i] == 0) continue;
+                ++contacts;
+                EXPECT_LE(found.toi[i], set.t_hi[i]) << set.name << ' ' << d << ' ' << lossless(set.pairs[i]);
+            }
+        }
+    for (const QuerySet& set : load_queries(*data)) {
+        const Answer found = answer(set.kind, interleaved(set.pairs), options_for(1e-12));
+        for (std::size_t i = 0; i < set.pairs.size(); ++i) {
+            contacts += set.truth[i] == 1;
+            EXPECT_TRUE(set.truth[i] == 0 || found.toi[i] <= 1.0) << set.name << ' ' << lossless(set.pairs[i]);
+        }
+    }
+    std::printf("%zu contacts kept\n", contacts);
+    EXPECT_GT(contacts, 300000u);
+}
+
+/// Larger distances are reached no later, but for the tolerance, and never with more than the cap of looks.
+TEST(Separation, BoundedLooks)
+{
+    for (const double relative : {1e-12, 1e-9, 1e-6, 1e-3, 0.1}) {
+        unsigned most = 0;
+        std::size_t pairs_in_all = 0, looks = 0, at_cap = 0;
+        for (const auto kind : kinds)
+            for (const std::string& family : families()) {
+                std::vector<oracle::Pair> pairs;
+                generate(family, kind, 118, 200, pairs);
+                for (const oracle::Pair& pair : pairs) {
+                    const double d = relative * size_of(pair);
+                    if (!(d > 0.0) || std::isinf(d)) continue;
+                    const SearchParameters parameters{1e-9, 1.0, false, SeparationParameters{d, 1e-6}};
+                    const unsigned count = scalar::separation_search(pair_kind(kind), pair[0].data(), parameters).intervals;
+                    most = std::max(most, count);
+                    ++pairs_in_all;
+                    looks += count;
+                    at_cap += count >= 4096;
+                }
+            }
+        std::printf("d %g s: %.1f looks a pair, at most %u, at the cap %zu of %zu\n", relative,
+                    static_cast<double>(looks) / static_cast<double>(pairs_in_all), most, at_cap, pairs_in_all);
+        EXPECT_LE(most, 4098u);  // the cap, the first look, the proof
+        EXPECT_LT(at_cap, pairs_in_all / 100);
+    }
+}
+
+}  // namespace
+}  // namespace fastccd::testing
