@@ -1,0 +1,162 @@
+#include "heat_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "format.hpp"
+#include "svg.hpp"
+
+namespace fastccd::tools::report {
+namespace {
+
+/// What a group of columns shows of a set; nothing where it is not known.
+struct Measure {
+    const char* heading[2];
+    const char* unit;
+    std::optional<double> (*value)(const Json& set);
+    bool always_wrong = false;  ///< Anything but 0 breaks a promise.
+};
+
+std::optional<double> early(const Json& comparison)
+{
+    if (comparison.is_null() || comparison["signed_error"].is_null()) return std::nullopt;
+    return std::max(0.0, -comparison["signed_error"]["earliest"].get<double>());
+}
+
+std::optional<double> alarm_share(const Json& comparison)
+{
+    if (comparison.is_null()) return std::nullopt;
+    return 100.0 * comparison["false_alarms"].get<double>() / std::max(1.0, comparison["pairs"].get<double>());
+}
+
+constexpr std::array<Measure, 7> measures{{
+    {{"missed", "or late"}, "pairs missed or late", [](const Json& set) -> std::optional<double> {
+         return set["plain"]["missed"].get<double>() + set["plain"]["late"].get<double>();
+     }, true},
+    {{"false", "alarms"}, "% false alarms", [](const Json& set) { return alarm_share(set["plain"]); }},
+    {{"alarms,", "--exact"}, "% false alarms with --exact", [](const Json& set) { return alarm_share(set["exact"]); }, true},
+    {{"worst", "early"}, "of the step early at worst", [](const Json& set) { return early(set["plain"]); }},
+    {{"early,", "--exact"}, "of the step early at worst with --exact", [](const Json& set) { return early(set["exact"]); }},
+    {{"ns per", "pair"}, "ns per pair", [](const Json& set) -> std::optional<double> {
+         return 1e9 * set["plain"]["timing"]["seconds"].get<double>() / std::max(1.0, set["pairs"].get<double>());
+     }},
+    {{"most", "intervals"}, "intervals at most", [](const Json& set) -> std::optional<double> { return set["intervals"]["most"].get<double>(); }},
+}};
+
+struct Column {
+    const char* letter;
+    const char* name;
+};
+
+struct Row {
+    std::string label;
+    std::vector<const Json*> sets;  ///< One for each column; null where there is none.
+};
+
+/// The ends of the colour scale of a measure: the least and the largest value above 0.
+struct Scale {
+    double least = HUGE_VAL, most = 0;
+
+    [[nodiscard]] std::size_t level(double value) const
+    {
+        if (most <= least) return 4;
+        const double share = std::log(value / least) / std::log(most / least);
+        return static_cast<std::size_t>(std::clamp(share * 9, 0.0, 8.0));
+    }
+};
+
+Picture heat_map(const std::string& name, const std::string& title, const std::vector<Column>& columns, const std::vector<Row>& rows)
+{
+    constexpr double left = 114, top = 84, row_height = 15, gap = 4;
+    const double group = (Svg::width - 6 - left) / static_cast<double>(measures.size());
+    const double cell = (group - gap) / static_cast<double>(columns.size());
+    const double floor = top + row_height * static_cast<double>(rows.size());
+    Svg svg{title, "Heat map of hard pairs: rows are families, columns what goes wrong or costs", floor + 46};
+    for (std::size_t m = 0; m < measures.size(); ++m) {
+        const Measure& measure = measures[m];
+        const double begin = left + group * static_cast<double>(m);
+        Scale scale;
+        for (const Row& row : rows) {
+            for (const Json* const set : row.sets) {
+                const std::optional<double> value = set == nullptr ? std::nullopt : measure.value(*set);
+                if (!value || *value <= 0) continue;
+                scale.least = std::min(scale.least, *value);
+                scale.most = std::max(scale.most, *value);
+            }
+        }
+        svg.text({begin, top - 38}, measure.heading[0], Anchor::start, "bold");
+        svg.text({begin, top - 23}, measure.heading[1], Anchor::start, "bold");
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            const double x = begin + cell * static_cast<double>(c);
+            svg.text({x + cell / 2, top - 6}, columns[c].letter, Anchor::middle, "soft");
+            for (std::size_t r = 0; r < rows.size(); ++r) {
+                const Json* const set = rows[r].sets[c];
+                const std::optional<double> value = set == nullptr ? std::nullopt : measure.value(*set);
+                if (!value) continue;
+                const std::string css = *value <= 0          ? "none"
+                                        : measure.always_wrong ? "wrong"
+                                                               : fmt::format("h{}", scale.level(*value));
+                const std::string tooltip = fmt::format("{}, {}: {} {}", rows[r].label, columns[c].name, figure(*value), measure.unit);
+                svg.rectangle({x + 0.5, top + row_height * static_cast<double>(r) + 0.5}, cell - 1, row_height - 1, css, tooltip);
+            }
+        }
+        svg.text({begin, floor + 17}, scale.most > 0 ? fmt::format("{:.1g}", scale.least) : "all 0", Anchor::start, "soft");
+        if (scale.most > scale.least) svg.text({begin, floor + 33}, fmt::format("to {:.1g}", scale.most), Anchor::start, "soft");
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        svg.text({left - 6, top + row_height * static_cast<double>(r) + 11.5}, rows[r].label, Anchor::end);
+    }
+    svg.text({left - 6, floor + 17}, "lightest", Anchor::end, "soft");
+    svg.text({left - 6, floor + 33}, "to strongest", Anchor::end, "soft");
+    return {name, svg.str()};
+}
+
+/// The row of that label, made if need be.
+Row& row_of(std::vector<Row>& rows, const std::string& label, std::size_t columns)
+{
+    const auto found = std::ranges::find(rows, label, &Row::label);
+    if (found != rows.end()) return *found;
+    return rows.emplace_back(Row{label, std::vector<const Json*>(columns, nullptr)});
+}
+
+std::string without_prefix(const std::string& text, std::string_view prefix)
+{
+    return text.starts_with(prefix) ? text.substr(prefix.size()) : text;
+}
+
+}  // namespace
+
+std::vector<Picture> heat_maps(const Json& hard_cases)
+{
+    const std::vector<Column> by_numbers{{"v", "vertex-face, double"}, {"e", "edge-edge, double"}, {"v", "vertex-face, float"}, {"e", "edge-edge, float"}};
+    const std::vector<Column> by_kind{{"vf", "vertex-face"}, {"ee", "edge-edge"}};
+    std::vector<Row> made, published, queries;
+    for (const Json& set : hard_cases["sets"]) {
+        std::string name = set["name"];
+        const std::size_t kind = set["kind"] == "vf" ? 0 : 1;
+        if (name.starts_with("queries/")) {  // queries/SCENE/vertex-face/data_0_1.csv
+            const std::size_t slash = name.find('/', 8), file = name.rfind("data_");
+            const std::string number = file == std::string::npos ? "" : name.substr(file + 4, 4);
+            row_of(queries, without_prefix(name.substr(8, slash - 8), "erleben-") + number, 2).sets[kind] = &set;
+            continue;
+        }
+        std::vector<Row>& rows = set["source"] == "generated" ? made : published;
+        name = without_prefix(name, "hardcases/");
+        const bool single = name.starts_with("f32_");
+        const std::string family = without_prefix(name, "f32_").substr(0, name.size() - (single ? 7 : 3));
+        row_of(rows, family == "momentary_degenerate" ? "momentary_deg." : family, 4).sets[kind + (single ? 2 : 0)] = &set;
+    }
+    std::vector<Picture> pictures{heat_map("hard_cases", "Hard cases: made here, truth from the exact oracle", by_numbers, made)};
+    if (!published.empty()) pictures.push_back(heat_map("hard_cases_public", "Hard cases: public data, published truth", by_numbers, published));
+    if (!queries.empty()) pictures.push_back(heat_map("hard_cases_queries", "Handcrafted queries: public data, published truth", by_kind, queries));
+    return pictures;
+}
+
+}  // namespace fastccd::tools::report
