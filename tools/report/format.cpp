@@ -25,9 +25,9 @@ std::string figure(double number)
 
 std::string how(const Json& timing)
 {
-    const auto repeats = timing["repeats"].get<std::size_t>();
+    const auto repeats = timing.at("repeats").get<std::size_t>();
     if (repeats < 2) return "measured once";
-    const double median = timing["seconds"], spread = timing["most"].get<double>() - timing["least"].get<double>();
+    const double median = timing.at("seconds"), spread = timing.at("most").get<double>() - timing.at("least").get<double>();
     return fmt::format("median of {}, spread {:.2g} %", repeats, median > 0 ? 100 * spread / median : 0.0);
 }
 
@@ -35,8 +35,8 @@ double million_pairs_per_second(const Json& timing) { return 1e-6 * timing.value
 
 std::string wrong_answers(const Json& comparison)
 {
-    return fmt::format("{} missed, {} late, {} false alarms", count(comparison["missed"]), count(comparison["late"]),
-                       count(comparison["false_alarms"]));
+    return fmt::format("{} missed, {} late, {} false alarms", count(comparison.at("missed")), count(comparison.at("late")),
+                       count(comparison.at("false_alarms")));
 }
 
 std::string isa_label(const std::string& isa)

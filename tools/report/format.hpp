@@ -7,6 +7,9 @@
 
 namespace fastccd::tools::report {
 
+/// The last of a list. Throws Json::exception if there is none: a report.json that is drawn again may hold anything.
+[[nodiscard]] inline const Json& last(const Json& list) { return list.at(list.size() - 1); }
+
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string count(const Json& number);
 

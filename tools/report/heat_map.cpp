@@ -21,33 +21,34 @@ struct Measure {
     const char* heading[2];
     const char* unit;
     std::optional<double> (*value)(const Json& set);
+    const char* scale;           ///< Measures with the same one have their colours from one scale.
     bool always_wrong = false;  ///< Anything but 0 breaks a promise.
 };
 
 std::optional<double> early(const Json& comparison)
 {
-    if (comparison.is_null() || comparison["signed_error"].is_null()) return std::nullopt;
-    return std::max(0.0, -comparison["signed_error"]["earliest"].get<double>());
+    if (comparison.is_null() || comparison.at("signed_error").is_null()) return std::nullopt;
+    return std::max(0.0, -comparison.at("signed_error").at("earliest").get<double>());
 }
 
 std::optional<double> alarm_share(const Json& comparison)
 {
     if (comparison.is_null()) return std::nullopt;
-    return 100.0 * comparison["false_alarms"].get<double>() / std::max(1.0, comparison["pairs"].get<double>());
+    return 100.0 * comparison.at("false_alarms").get<double>() / std::max(1.0, comparison.at("pairs").get<double>());
 }
 
 constexpr std::array<Measure, 7> measures{{
     {{"missed", "or late"}, "pairs missed or late", [](const Json& set) -> std::optional<double> {
-         return set["plain"]["missed"].get<double>() + set["plain"]["late"].get<double>();
-     }, true},
-    {{"false", "alarms"}, "% false alarms", [](const Json& set) { return alarm_share(set["plain"]); }},
-    {{"alarms,", "--exact"}, "% false alarms with --exact", [](const Json& set) { return alarm_share(set["exact"]); }, true},
-    {{"worst", "early"}, "of the step early at worst", [](const Json& set) { return early(set["plain"]); }},
-    {{"early,", "--exact"}, "of the step early at worst with --exact", [](const Json& set) { return early(set["exact"]); }},
+         return set.at("plain").at("missed").get<double>() + set.at("plain").at("late").get<double>();
+     }, "missed", true},
+    {{"false", "alarms"}, "% false alarms", [](const Json& set) { return alarm_share(set.at("plain")); }, "alarms"},
+    {{"alarms", "--exact"}, "% false alarms with --exact", [](const Json& set) { return alarm_share(set.at("exact")); }, "exact alarms", true},
+    {{"worst", "early"}, "of the step early at worst", [](const Json& set) { return early(set.at("plain")); }, "early"},
+    {{"early", "--exact"}, "of the step early at worst with --exact", [](const Json& set) { return early(set.at("exact")); }, "early"},
     {{"ns per", "pair"}, "ns per pair", [](const Json& set) -> std::optional<double> {
-         return 1e9 * set["plain"]["timing"]["seconds"].get<double>() / std::max(1.0, set["pairs"].get<double>());
-     }},
-    {{"most", "intervals"}, "intervals at most", [](const Json& set) -> std::optional<double> { return set["intervals"]["most"].get<double>(); }},
+         return 1e9 * set.at("plain").at("timing").at("seconds").get<double>() / std::max(1.0, set.at("pairs").get<double>());
+     }, "time"},
+    {{"most in-", "tervals"}, "intervals at most", [](const Json& set) -> std::optional<double> { return set.at("intervals").at("most").get<double>(); }, "intervals"},
 }};
 
 struct Column {
@@ -72,17 +73,21 @@ struct Scale {
     }
 };
 
-Picture heat_map(const std::string& name, const std::string& title, const std::vector<Column>& columns, const std::vector<Row>& rows)
+/// As short as can be: "0.3", "20", "2e4", "9e-10".
+std::string one_digit(double value)
 {
-    constexpr double left = 114, top = 84, row_height = 15, gap = 4;
-    const double group = (Svg::width - 6 - left) / static_cast<double>(measures.size());
-    const double cell = (group - gap) / static_cast<double>(columns.size());
-    const double floor = top + row_height * static_cast<double>(rows.size());
-    Svg svg{title, "Heat map of hard pairs: rows are families, columns what goes wrong or costs", floor + 46};
-    for (std::size_t m = 0; m < measures.size(); ++m) {
-        const Measure& measure = measures[m];
-        const double begin = left + group * static_cast<double>(m);
-        Scale scale;
+    if (value >= 1 && value < 999.5) return fmt::format("{:.0f}", value);
+    std::string text = fmt::format("{:.1g}", value);
+    if (const std::size_t plus = text.find("e+0"); plus != std::string::npos) text.erase(plus + 1, 2);
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
+Scale scale_of(const Measure& one, const std::vector<Row>& rows)
+{
+    Scale scale;
+    for (const Measure& measure : measures) {
+        if (std::string_view{measure.scale} != one.scale) continue;
         for (const Row& row : rows) {
             for (const Json* const set : row.sets) {
                 const std::optional<double> value = set == nullptr ? std::nullopt : measure.value(*set);
@@ -91,8 +96,31 @@ Picture heat_map(const std::string& name, const std::string& title, const std::v
                 scale.most = std::max(scale.most, *value);
             }
         }
-        svg.text({begin, top - 38}, measure.heading[0], Anchor::start, "bold");
-        svg.text({begin, top - 23}, measure.heading[1], Anchor::start, "bold");
+    }
+    return scale;
+}
+
+Picture heat_map(const std::string& name, const std::string& title, const std::vector<Column>& columns, const std::vector<Row>& rows)
+{
+    constexpr double top = 84, row_height = 15, gap = 5;
+    std::size_t longest = 0;
+    for (const Row& row : rows) longest = std::max(longest, row.label.size());
+    const double left = std::max(90.0, 16 + 7.2 * static_cast<double>(longest));
+    std::vector<const Measure*> shown;  // those that are known of any set
+    for (const Measure& measure : measures) {
+        const auto known = [&](const Json* set) { return set != nullptr && measure.value(*set); };
+        if (std::ranges::any_of(rows, [&](const Row& row) { return std::ranges::any_of(row.sets, known); })) shown.push_back(&measure);
+    }
+    const double group = (Svg::width - 6 - left) / static_cast<double>(shown.size());
+    const double cell = (group - gap) / static_cast<double>(columns.size());
+    const double floor = top + row_height * static_cast<double>(rows.size());
+    Svg svg{title, "Heat map of hard pairs: rows are families, columns what goes wrong or costs", floor + 46};
+    for (std::size_t m = 0; m < shown.size(); ++m) {
+        const Measure& measure = *shown[m];
+        const double begin = left + group * static_cast<double>(m);
+        const Scale scale = scale_of(measure, rows);
+        svg.text({begin, top - 38}, measure.heading[0]);
+        svg.text({begin, top - 23}, measure.heading[1]);
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const double x = begin + cell * static_cast<double>(c);
             svg.text({x + cell / 2, top - 6}, columns[c].letter, Anchor::middle, "soft");
@@ -107,14 +135,14 @@ Picture heat_map(const std::string& name, const std::string& title, const std::v
                 svg.rectangle({x + 0.5, top + row_height * static_cast<double>(r) + 0.5}, cell - 1, row_height - 1, css, tooltip);
             }
         }
-        svg.text({begin, floor + 17}, scale.most > 0 ? fmt::format("{:.1g}", scale.least) : "all 0", Anchor::start, "soft");
-        if (scale.most > scale.least) svg.text({begin, floor + 33}, fmt::format("to {:.1g}", scale.most), Anchor::start, "soft");
+        svg.text({begin, floor + 17}, scale.most > 0 ? one_digit(scale.least) : "all 0", Anchor::start, "soft");
+        if (scale.most > scale.least) svg.text({begin, floor + 33}, one_digit(scale.most), Anchor::start, "soft");
     }
     for (std::size_t r = 0; r < rows.size(); ++r) {
         svg.text({left - 6, top + row_height * static_cast<double>(r) + 11.5}, rows[r].label, Anchor::end);
     }
-    svg.text({left - 6, floor + 17}, "lightest", Anchor::end, "soft");
-    svg.text({left - 6, floor + 33}, "to strongest", Anchor::end, "soft");
+    svg.text({left - 6, floor + 17}, "palest", Anchor::end, "soft");
+    svg.text({left - 6, floor + 33}, "strongest", Anchor::end, "soft");
     return {name, svg.str()};
 }
 
@@ -138,16 +166,16 @@ std::vector<Picture> heat_maps(const Json& hard_cases)
     const std::vector<Column> by_numbers{{"v", "vertex-face, double"}, {"e", "edge-edge, double"}, {"v", "vertex-face, float"}, {"e", "edge-edge, float"}};
     const std::vector<Column> by_kind{{"vf", "vertex-face"}, {"ee", "edge-edge"}};
     std::vector<Row> made, published, queries;
-    for (const Json& set : hard_cases["sets"]) {
-        std::string name = set["name"];
-        const std::size_t kind = set["kind"] == "vf" ? 0 : 1;
+    for (const Json& set : hard_cases.at("sets")) {
+        std::string name = set.at("name");
+        const std::size_t kind = set.at("kind") == "vf" ? 0 : 1;
         if (name.starts_with("queries/")) {  // queries/SCENE/vertex-face/data_0_1.csv
             const std::size_t slash = name.find('/', 8), file = name.rfind("data_");
             const std::string number = file == std::string::npos ? "" : name.substr(file + 4, 4);
-            row_of(queries, without_prefix(name.substr(8, slash - 8), "erleben-") + number, 2).sets[kind] = &set;
+            row_of(queries, without_prefix(without_prefix(name.substr(8, slash - 8), "erleben-"), "cube-") + number, 2).sets.at(kind) = &set;
             continue;
         }
-        std::vector<Row>& rows = set["source"] == "generated" ? made : published;
+        std::vector<Row>& rows = set.at("source") == "generated" ? made : published;
         name = without_prefix(name, "hardcases/");
         const bool single = name.starts_with("f32_");
         const std::string family = without_prefix(name, "f32_").substr(0, name.size() - (single ? 7 : 3));

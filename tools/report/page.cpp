@@ -26,13 +26,13 @@ constexpr std::string_view head = R"(<!doctype html>
 body{margin:0 auto;max-width:68rem;padding:1rem .75rem 4rem;background:var(--surface);color:var(--ink);
 font:16px/1.5 system-ui,-apple-system,"Segoe UI",sans-serif;overflow-wrap:anywhere}
 h1{font-size:1.7rem;line-height:1.2;margin:.5rem 0}h2{margin:2.5rem 0 .5rem;font-size:1.3rem;border-top:1px solid var(--line);padding-top:1.2rem}
-p,ul{max-width:46rem}.soft,caption,small{color:var(--soft)}small{font-size:.8em}
+p,ul{max-width:46rem}.soft,.caption,small{color:var(--soft)}small{font-size:.8em}
 .pictures{display:flex;flex-wrap:wrap;gap:1rem;margin:1rem 0}
 figure{margin:0;flex:1 1 22rem;max-width:40rem;min-width:0}
 figure svg{display:block;width:100%;height:auto;border:1px solid var(--line);border-radius:6px}
 .scroll{overflow-x:auto;margin:.75rem 0}
 table{border-collapse:collapse;font-size:.85rem;font-variant-numeric:tabular-nums;overflow-wrap:normal}
-caption{text-align:left;padding:0 0 .4rem;min-width:16rem}
+.caption{font-size:.85rem;margin:1rem 0 -.4rem}
 th,td{padding:.2rem .6rem .2rem 0;text-align:right;white-space:nowrap;border-bottom:1px solid var(--line)}
 th{white-space:normal;vertical-align:bottom;font-weight:600}
 th:first-child,td:first-child{text-align:left}
@@ -56,19 +56,19 @@ std::string paragraph(const std::string& text)
 
 std::string machine_list(const Json& report)
 {
-    const Json& machine = report["machine"];
+    const Json& machine = report.at("machine");
     std::string isas;
-    for (const Json& isa : machine["isas"]) isas += (isas.empty() ? "" : ", ") + isa_label(isa);
+    for (const Json& isa : machine.at("isas")) isas += (isas.empty() ? "" : ", ") + isa_label(isa);
     std::string html = "<dl>";
     const auto entry = [&](std::string_view term, const std::string& text) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", term, escaped(text)); };
-    entry("processor", fmt::format("{}, {} threads, {:.0f} GB of memory", machine["processor"].get<std::string>(), machine["threads"].get<int>(),
-                                   1e-9 * machine["memory_bytes"].get<double>()));
-    entry("system", machine["system"]);
-    entry("build", fmt::format("{}, {}", machine["compiler"].get<std::string>(), machine["flags"].get<std::string>()));
-    entry("instruction sets", fmt::format("{}; used unless said otherwise: {}", isas, isa_label(machine["best_isa"])));
-    entry("commit", machine["commit"]);
-    entry("measured", fmt::format("{}, load average {:.1f} at the start{}", machine["date"].get<std::string>(), machine["load_average"].get<double>(),
-                                  report["quick"] == true ? "; quick: fewer pairs and repeats" : ""));
+    entry("processor", fmt::format("{}, {} threads, {:.0f} GB of memory", machine.at("processor").get<std::string>(), machine.at("threads").get<int>(),
+                                   1e-9 * machine.at("memory_bytes").get<double>()));
+    entry("system", machine.at("system"));
+    entry("build", fmt::format("{}, {}", machine.at("compiler").get<std::string>(), machine.at("flags").get<std::string>()));
+    entry("instruction sets", fmt::format("{}; used unless said otherwise: {}", isas, isa_label(machine.at("best_isa"))));
+    entry("commit", machine.at("commit"));
+    entry("measured", fmt::format("{}, load average {:.1f} at the start{}", machine.at("date").get<std::string>(), machine.at("load_average").get<double>(),
+                                  report.at("quick") == true ? "; quick: fewer pairs and repeats" : ""));
     return html + "</dl>\n";
 }
 
@@ -77,23 +77,23 @@ std::string verdict(const Json& report)
 {
     std::size_t pairs = 0, missed = 0, late = 0, alarms = 0, exact_pairs = 0, exact_alarms = 0;
     const auto add = [&](const Json& comparison) {
-        pairs += comparison["pairs"].get<std::size_t>();
-        missed += comparison["missed"].get<std::size_t>();
-        late += comparison["late"].get<std::size_t>();
+        pairs += comparison.at("pairs").get<std::size_t>();
+        missed += comparison.at("missed").get<std::size_t>();
+        late += comparison.at("late").get<std::size_t>();
     };
     for (const char* kind : {"vf", "ee"}) {
-        for (const Json& point : report["speed_and_error"][kind]["points"]) {
+        for (const Json& point : report.at("speed_and_error").at(kind).at("points")) {
             add(point);
-            alarms += point["false_alarms"].get<std::size_t>();
+            alarms += point.at("false_alarms").get<std::size_t>();
         }
     }
-    for (const Json& set : report["hard_cases"]["sets"]) {
-        add(set["plain"]);
-        alarms += set["plain"]["false_alarms"].get<std::size_t>();
-        if (set["exact"].is_null()) continue;
-        add(set["exact"]);
-        exact_pairs += set["exact"]["pairs"].get<std::size_t>();
-        exact_alarms += set["exact"]["false_alarms"].get<std::size_t>();
+    for (const Json& set : report.at("hard_cases").at("sets")) {
+        add(set.at("plain"));
+        alarms += set.at("plain").at("false_alarms").get<std::size_t>();
+        if (set.at("exact").is_null()) continue;
+        add(set.at("exact"));
+        exact_pairs += set.at("exact").at("pairs").get<std::size_t>();
+        exact_alarms += set.at("exact").at("false_alarms").get<std::size_t>();
     }
     return fmt::format("<p class=\"verdict\" data-judged=\"all\">Of {} answers judged by exact truth, <b class=\"missed{}\">{}</b> missed a contact and "
                        "<b class=\"late{}\">{}</b> came late. <b class=\"false-alarms\">{}</b> were false alarms, near misses to within rounding; "
@@ -125,23 +125,23 @@ std::string html_page(const Json& report, const std::vector<Picture>& pictures)
                       "reported after the exact first contact. <i>False alarm</i>: reported, no contact in truth. Errors of the time of impact are in "
                       "units of the step. E_tol is the tolerance, the only one there is.");
 
-    html += heading(1, "The paper's random test") + show({"figure_1"}) + paper_tables(report["paper_table"]);
+    html += heading(1, "The paper's random test") + show({"figure_1"}) + paper_tables(report.at("paper_table"));
 
     html += heading(2, "Speed against error");
     html += paragraph("Every mark is one instruction set at one E_tol; figures at marks of the widest set are its E_tol. Right is worse, up is faster; "
-                      "the dashed line joins what nothing else beats in both, by worst error. Results are the same bits on every instruction set, so "
+                      "the dashed line, the Pareto front, joins what nothing else beats in both, by worst error. Results are the same bits on every instruction set, so "
                       "that marks of one E_tol are above each other.");
     html += show({"speed_error_vf", "speed_error_ee"});
-    html += speed_error_tables(report["speed_and_error"], "vf") + speed_error_tables(report["speed_and_error"], "ee");
+    html += speed_error_tables(report.at("speed_and_error"), "vf") + speed_error_tables(report.at("speed_and_error"), "ee");
 
     html += heading(3, "Hard cases");
     html += paragraph("Families of pairs made to break things: grazing, boundary, coplanar, degenerate, resting, extreme sizes. v: vertex-face, e: edge-edge, "
-                      "first with double, then with float coordinates. The stronger the colour, the more; an empty frame is 0, and the two colums that "
+                      "first with double, then with float coordinates. The stronger the colour, the more; an empty frame is 0, and the two columns that "
                       "promises are about must be empty.");
-    html += show({"hard_cases", "hard_cases_public", "hard_cases_queries"}) + hard_case_table(report["hard_cases"]);
+    html += show({"hard_cases", "hard_cases_public", "hard_cases_queries"}) + hard_case_table(report.at("hard_cases"));
 
-    html += heading(4, "Scenes") + show({"scenes"}) + scene_tables(report["scenes"]);
-    html += heading(5, "Scaling") + show({"threads", "pairs", "memory"}) + scaling_tables(report["scaling"]);
+    html += heading(4, "Scenes") + show({"scenes"}) + scene_tables(report.at("scenes"));
+    html += heading(5, "Scaling") + show({"threads", "pairs", "memory"}) + scaling_tables(report.at("scaling"));
     return html + "</body></html>\n";
 }
 

@@ -44,13 +44,13 @@ Picture figure_1(const Json& table)
 {
     constexpr double paper_pairs = 1e7;
     const auto seconds = [&](const Json& row, const char* threads) {
-        return row[threads]["seconds"].get<double>() * paper_pairs / table["pairs"].get<double>();
+        return row.at(threads).at("seconds").get<double>() * paper_pairs / table.at("pairs").get<double>();
     };
-    const double exact = table["paper"]["exactCCD_seconds"], safe = table["paper"]["safeCCD_seconds"];
+    const double exact = table.at("paper").at("exactCCD_seconds"), safe = table.at("paper").at("safeCCD_seconds");
     Extent extent;
     extent.add(exact);
     for (const char* kind : {"vf", "ee"}) {
-        for (const Json& row : table[kind]) extent.add(seconds(row, "all_threads")), extent.add(seconds(row, "one_thread"));
+        for (const Json& row : table.at(kind)) extent.add(seconds(row, "all_threads")), extent.add(seconds(row, "one_thread"));
     }
     Axis x = log_axis("E_tol, in units of the step", 1e-13, 1e-6);
     std::swap(x.low, x.high);  // as in the paper: finer to the right
@@ -62,16 +62,16 @@ Picture figure_1(const Json& table)
     const auto add = [&](const char* kind, Series series, bool dashed, auto value, const std::string& name) {
         std::vector<Point> points;
         std::vector<std::string> tooltips;
-        for (const Json& row : table[kind]) {
-            points.push_back({row["tolerance"], value(row)});
+        for (const Json& row : table.at(kind)) {
+            points.push_back({row.at("tolerance"), value(row)});
             tooltips.push_back(fmt::format("{}: {:.3g} s at E_tol {:g}", name, points.back().y, points.back().x));
         }
         draw(chart, points, series, dashed, name, tooltips);
     };
     const auto one = [&](const Json& row) { return seconds(row, "one_thread"); };
     const auto all = [&](const Json& row) { return seconds(row, "all_threads"); };
-    const std::string threads = fmt::format("{} threads", table["threads"].get<int>());
-    add("vf", Series::vermilion, true, [](const Json& row) { return row["paper"]["seconds"].get<double>(); }, "the paper, vertex-face (2014)");
+    const std::string threads = fmt::format("{} threads", table.at("threads").get<int>());
+    add("vf", Series::vermilion, true, [](const Json& row) { return row.at("paper").at("seconds").get<double>(); }, "the paper, vertex-face (2014)");
     add("vf", Series::blue, false, one, "vertex-face, 1 thread");
     add("vf", Series::sky, false, all, "vertex-face, " + threads);
     add("ee", Series::green, false, one, "edge-edge, 1 thread");
@@ -82,21 +82,21 @@ Picture figure_1(const Json& table)
 double error(const Json& comparison, const char* which)
 {
     constexpr double least = 1e-17;  // nearer than doubles can tell
-    return std::max(least, comparison["absolute_error"][which].get<double>());
+    return std::max(least, comparison.at("absolute_error").at(which).get<double>());
 }
 
 Picture speed_error(const Json& part, const std::string& kind)
 {
-    const Json &points = part[kind]["points"], &peers = part[kind]["peers"];
+    const Json &points = part.at(kind).at("points"), &peers = part.at(kind).at("peers");
     Extent speeds, errors;
     std::vector<SpeedError> all;
     for (const Json* const list : {&points, &peers}) {
         for (const Json& point : *list) {
-            speeds.add(million_pairs_per_second(point["timing"]));
-            if (point["absolute_error"].is_null()) continue;
+            speeds.add(million_pairs_per_second(point.at("timing")));
+            if (point.at("absolute_error").is_null()) continue;
             errors.add(error(point, "median"));
             errors.add(error(point, "worst"));
-            all.push_back({million_pairs_per_second(point["timing"]), error(point, "worst")});
+            all.push_back({million_pairs_per_second(point.at("timing")), error(point, "worst")});
         }
     }
     if (all.empty()) errors.add(1e-9);  // so few pairs that none touches
@@ -104,7 +104,7 @@ Picture speed_error(const Json& part, const std::string& kind)
     const double right_end = x.high;
     Chart chart{fmt::format("Speed against error: {} pairs", kind_label(kind)),
                 "Pairs per second on one thread against the error of the time of impact, for every instruction set and E_tol",
-                std::move(x), log_axis("million pairs per second, one thread", speeds.least, speeds.most), 400 + 18.0 * static_cast<double>(peers.size()),
+                std::move(x), log_axis("million pairs per second, one thread", speeds.least, 1.25 * speeds.most), 400 + 18.0 * static_cast<double>(peers.size()),
                 2 + peers.size()};
 
     std::vector<Point> front;
@@ -112,42 +112,43 @@ Picture speed_error(const Json& part, const std::string& kind)
         if (!front.empty()) front.push_back({point.error, front.back().y});
         front.push_back({point.error, point.million_pairs_per_second});
     }
-    chart.curve(front, Series::purple, true);
+    chart.curve(front, Series::grey, true);
 
     const auto mark = [&](const Json& point, Series series, const std::string& name) {
-        const double rate = million_pairs_per_second(point["timing"]);
-        const std::string tooltip = fmt::format("{}: {:.3g} M pairs/s ({}); {}", name, rate, how(point["timing"]), wrong_answers(point));
-        if (point["absolute_error"].is_null()) return chart.points({{right_end, rate}}, series, {tooltip + "; gives no time"});
+        const double rate = million_pairs_per_second(point.at("timing"));
+        const std::string tooltip = fmt::format("{}: {:.3g} M pairs/s ({}); {}", name, rate, how(point.at("timing")), wrong_answers(point));
+        if (point.at("absolute_error").is_null()) return chart.points({{right_end, rate}}, series, {tooltip + "; gives no time"});
         const double median = error(point, "median"), worst = error(point, "worst");
         chart.svg().whisker(chart.at(median, rate), chart.at(worst, rate), series);
         chart.points({{median, rate}}, series, {fmt::format("{}; error median {:.2g}, worst {:.2g}", tooltip, median, worst)});
     };
-    const std::string best = points.back()["isa"];
+    const std::string best = last(points).at("isa");
     std::vector<std::string> named;
     for (const Json& point : points) {
-        const std::string isa = point["isa"];
-        const double tolerance = point["tolerance"];
+        const std::string isa = point.at("isa");
+        const double tolerance = point.at("tolerance");
         mark(point, series_of_isa(isa), fmt::format("{}, E_tol {:g}", isa_label(isa), tolerance));
         if (std::ranges::find(named, isa) == named.end()) {
             named.push_back(isa);
             chart.legend(series_of_isa(isa), isa_label(isa));
         }
-        if (isa != best || point["absolute_error"].is_null()) continue;
-        const Point at = chart.at(error(point, "median"), million_pairs_per_second(point["timing"]));
-        chart.svg().text({at.x, at.y - 10}, power_of_ten(static_cast<int>(std::lround(std::log10(tolerance)))), Anchor::middle, "soft");
+        const int exponent = static_cast<int>(std::lround(std::log10(tolerance)));
+        if (isa != best || exponent % 2 == 0 || point.at("absolute_error").is_null()) continue;  // every second: side by side they overlap
+        const Point at = chart.at(error(point, "median"), million_pairs_per_second(point.at("timing")));
+        chart.svg().text({at.x, at.y - 10}, power_of_ten(exponent), Anchor::middle, "soft");
     }
     std::size_t missed = 0, late = 0, false_alarms = 0;
     for (const Json& point : points) {
-        missed += point["missed"].get<std::size_t>();
-        late += point["late"].get<std::size_t>();
-        false_alarms += point["false_alarms"].get<std::size_t>();
+        missed += point.at("missed").get<std::size_t>();
+        late += point.at("late").get<std::size_t>();
+        false_alarms += point.at("false_alarms").get<std::size_t>();
     }
-    chart.legend_note(fmt::format("each at E_tol 10⁻⁶ to 10⁻¹³: {} missed, {} late, {} false alarms", missed, late, false_alarms));
+    chart.legend_note(fmt::format("each at E_tol 10⁻⁶, 10⁻⁷ … 10⁻¹³: {} missed, {} late, {} false alarms", missed, late, false_alarms));
     for (const Json& peer : peers) {
-        const std::string name = peer["name"];
+        const std::string name = peer.at("name");
         const Series series = name.starts_with("bullet") ? Series::sky : name.ends_with("newton") ? Series::purple : Series::vermilion;
         mark(peer, series, name);
-        chart.legend(series, fmt::format("{}: {}{}", name, peer["absolute_error"].is_null() ? "no time, " : "", wrong_answers(peer)));
+        chart.legend(series, fmt::format("{}: {}{}", name, peer.at("absolute_error").is_null() ? "no time, " : "", wrong_answers(peer)));
     }
     return {"speed_error_" + kind, chart.str()};
 }
@@ -161,22 +162,22 @@ Picture scene_speeds(const Json& part)
     };
     std::vector<Row> rows;
     Extent extent;
-    const int all_threads = part["threads"];
-    for (const Json& scene : part["scenes"]) {
+    const int all_threads = part.at("threads");
+    for (const Json& scene : part.at("scenes")) {
         for (const char* kind : {"vf", "ee"}) {
-            Row row{fmt::format("{}, {}", scene["name"].get<std::string>(), kind), {}};
-            for (const Json& point : scene["steps"].back()[kind]["speeds"]) {
-                const bool best = point["isa"] == part["isa"] && point["threads"] == all_threads && all_threads > 1;
-                if (point["threads"] != 1 && !best) continue;
-                row.timings.emplace_back(best ? Series::purple : series_of_isa(point["isa"]), &point["timing"]);
-                extent.add(million_pairs_per_second(point["timing"]));
+            Row row{fmt::format("{}, {}", scene.at("name").get<std::string>(), kind), {}};
+            for (const Json& point : last(scene.at("steps")).at(kind).at("speeds")) {
+                const bool best = point.at("isa") == part.at("isa") && point.at("threads") == all_threads && all_threads > 1;
+                if (point.at("threads") != 1 && !best) continue;
+                row.timings.emplace_back(best ? Series::purple : series_of_isa(point.at("isa")), &point.at("timing"));
+                extent.add(million_pairs_per_second(point.at("timing")));
             }
             rows.push_back(std::move(row));
         }
     }
-    for (const Json& scene : part["paper"]) {
-        const double rate = 1e-6 * scene["candidates"].get<double>() / scene["seconds"].get<double>();
-        rows.push_back({fmt::format("paper: {}", scene["name"].get<std::string>()), {}, rate});
+    for (const Json& scene : part.at("paper")) {
+        const double rate = 1e-6 * scene.at("candidates").get<double>() / scene.at("seconds").get<double>();
+        rows.push_back({fmt::format("paper: {}", scene.at("name").get<std::string>()), {}, rate});
         extent.add(rate);
     }
 
@@ -201,10 +202,10 @@ Picture scene_speeds(const Json& part)
     }
     svg.text({(left + Svg::width) / 2, floor + 34}, x.label, Anchor::middle);
     Legend legend{svg, 14, floor + 58};
-    for (const Json& point : part["scenes"][0]["steps"].back()["vf"]["speeds"]) {
-        if (point["threads"] == 1) legend.add(series_of_isa(point["isa"]), isa_label(point["isa"]));
+    for (const Json& point : last(part.at("scenes").at(0).at("steps")).at("vf").at("speeds")) {
+        if (point.at("threads") == 1) legend.add(series_of_isa(point.at("isa")), isa_label(point.at("isa")));
     }
-    if (all_threads > 1) legend.add(Series::purple, fmt::format("{}, {} threads", isa_label(part["isa"]), all_threads));
+    if (all_threads > 1) legend.add(Series::purple, fmt::format("{}, {} threads", isa_label(part.at("isa")), all_threads));
     legend.add(Series::vermilion, "the paper (2014)");
     return {"scenes", svg.str()};
 }
@@ -212,21 +213,21 @@ Picture scene_speeds(const Json& part)
 Picture threads(const Json& part)
 {
     Extent extent;
-    const Json& over = part["over_threads"];
+    const Json& over = part.at("over_threads");
     for (const Json& series : over) {
-        for (const Json& point : series["points"]) extent.add(million_pairs_per_second(point["timing"]));
+        for (const Json& point : series.at("points")) extent.add(million_pairs_per_second(point.at("timing")));
     }
-    const int most = part["threads"];
+    const int most = part.at("threads");
     Axis x{0.5, most + 0.5, false, "threads", {}};
-    for (const Json& point : over["random_vf"]["points"]) x.ticks.emplace_back(point["threads"].get<double>(), std::to_string(point["threads"].get<int>()));
+    for (const Json& point : over.at("random_vf").at("points")) x.ticks.emplace_back(point.at("threads").get<double>(), std::to_string(point.at("threads").get<int>()));
     Chart chart{"Threads", "Pairs per second against the number of threads", std::move(x),
                 linear_axis("million pairs per second", extent.most), 320, 2};
     const auto add = [&](const char* key, Series series, const std::string& name) {
         std::vector<Point> points;
         std::vector<std::string> tooltips;
-        for (const Json& point : over[key]["points"]) {
-            points.push_back({point["threads"], million_pairs_per_second(point["timing"])});
-            tooltips.push_back(fmt::format("{}: {:.3g} M pairs/s ({})", name, points.back().y, how(point["timing"])));
+        for (const Json& point : over.at(key).at("points")) {
+            points.push_back({point.at("threads"), million_pairs_per_second(point.at("timing"))});
+            tooltips.push_back(fmt::format("{}: {:.3g} M pairs/s ({})", name, points.back().y, how(point.at("timing"))));
         }
         chart.curve({{points[0].x, points[0].y}, {points.back().x, points.back().x * points[0].y}}, Series::grey, true);
         draw(chart, points, series, false, name, tooltips);
@@ -240,24 +241,24 @@ Picture threads(const Json& part)
 /// Of both ways to answer many pairs.
 Picture against_pairs(const Json& part, const char* name, const char* title, const char* label, auto value)
 {
-    const Json& over = part["over_pairs"];
+    const Json& over = part.at("over_pairs");
     Extent pairs, values;
     for (const char* key : {"in_memory", "piece_by_piece"}) {
-        for (const Json& point : over[key]) pairs.add(point["pairs"]), values.add(value(point));
+        for (const Json& point : over.at(key)) pairs.add(point.at("pairs")), values.add(value(point));
     }
     Chart chart{title, "Against the number of random vertex-face pairs", log_axis("pairs", pairs.least, pairs.most),
                 log_axis(label, values.least, values.most), 320, 2};
     const auto add = [&](const char* key, Series series, const char* legend) {
         std::vector<Point> points;
         std::vector<std::string> tooltips;
-        for (const Json& point : over[key]) {
-            points.push_back({point["pairs"], value(point)});
-            tooltips.push_back(fmt::format("{} pairs: {:.3g} {} ({})", count(point["pairs"]), points.back().y, label, how(point["timing"])));
+        for (const Json& point : over.at(key)) {
+            points.push_back({point.at("pairs"), value(point)});
+            tooltips.push_back(fmt::format("{} pairs: {:.3g} {} ({})", count(point.at("pairs")), points.back().y, label, how(point.at("timing"))));
         }
         if (!points.empty()) draw(chart, points, series, false, legend, tooltips);
     };
     add("in_memory", Series::blue, "all in one buffer");
-    add("piece_by_piece", Series::orange, fmt::format("piece by piece, {} at a time", count(over["piece"])).c_str());
+    add("piece_by_piece", Series::orange, fmt::format("piece by piece, {} at a time", count(over.at("piece"))).c_str());
     return {name, chart.str()};
 }
 
@@ -277,17 +278,17 @@ std::vector<SpeedError> pareto_front(std::vector<SpeedError> points)
 
 std::vector<Picture> draw_pictures(const Json& report)
 {
-    std::vector<Picture> pictures{figure_1(report["paper_table"]), speed_error(report["speed_and_error"], "vf"),
-                                  speed_error(report["speed_and_error"], "ee")};
-    for (Picture& picture : heat_maps(report["hard_cases"])) pictures.push_back(std::move(picture));
-    pictures.push_back(scene_speeds(report["scenes"]));
-    const Json& scaling = report["scaling"];
+    std::vector<Picture> pictures{figure_1(report.at("paper_table")), speed_error(report.at("speed_and_error"), "vf"),
+                                  speed_error(report.at("speed_and_error"), "ee")};
+    for (Picture& picture : heat_maps(report.at("hard_cases"))) pictures.push_back(std::move(picture));
+    pictures.push_back(scene_speeds(report.at("scenes")));
+    const Json& scaling = report.at("scaling");
     pictures.push_back(threads(scaling));
     pictures.push_back(against_pairs(scaling, "pairs", "Time per pair against the number of pairs", "nanoseconds per pair", [](const Json& point) {
-        return 1e9 * point["timing"]["seconds"].get<double>() / point["pairs"].get<double>();
+        return 1e9 * point.at("timing").at("seconds").get<double>() / point.at("pairs").get<double>();
     }));
     pictures.push_back(against_pairs(scaling, "memory", "Resident memory against the number of pairs", "megabytes", [](const Json& point) {
-        return 1e-6 * point["resident_bytes"].get<double>();
+        return 1e-6 * point.at("resident_bytes").get<double>();
     }));
     return pictures;
 }

@@ -103,11 +103,16 @@ void write_report(const ReportOptions& options)
     } else {
         json = read_json(options.draw);
     }
-    const std::vector<Picture> pictures = draw_pictures(json);
     std::vector<std::pair<std::string, std::string>> files;
-    for (const Picture& picture : pictures) files.emplace_back(picture.name + ".svg", picture.svg);
-    files.emplace_back("report.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-    files.emplace_back("report.html", html_page(json, pictures));
+    try {
+        const std::vector<Picture> pictures = draw_pictures(json);
+        for (const Picture& picture : pictures) files.emplace_back(picture.name + ".svg", picture.svg);
+        files.emplace_back("report.json", json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+        files.emplace_back("report.html", html_page(json, pictures));
+    } catch (const Json::exception& error) {
+        if (options.draw.empty()) throw;
+        throw InputError(options.draw, std::string{"is no report.json of this version: "} + error.what());
+    }
     folder.write(files);
 }
 

@@ -145,11 +145,32 @@ std::string power_of_ten(int exponent)
     return text;
 }
 
+namespace {
+
+/// 1, 2 or 5 times a power of ten.
+double one_two_five(int step)
+{
+    constexpr std::array mantissas{1.0, 2.0, 5.0};
+    const int power = step >= 0 ? step / 3 : -((2 - step) / 3);
+    return mantissas[static_cast<std::size_t>(step - 3 * power)] * std::pow(10.0, power);
+}
+
+}  // namespace
+
 Axis log_axis(std::string label, double least, double most)
 {
     const int first = static_cast<int>(std::floor(std::log10(least) + 1e-9));
     const int last = std::max(first + 1, static_cast<int>(std::ceil(std::log10(most) - 1e-9)));
     Axis axis{std::pow(10.0, first), std::pow(10.0, last), true, std::move(label), {}};
+    if (last - first <= 3) {
+        int low = 3 * first, high = 3 * last;
+        while (one_two_five(low + 1) <= least && low + 1 < high) ++low;
+        while (one_two_five(high - 1) >= most && low < high - 1) --high;
+        axis.low = one_two_five(low);
+        axis.high = one_two_five(high);
+        for (int step = low; step <= high; ++step) axis.ticks.emplace_back(one_two_five(step), fmt::format("{:g}", one_two_five(step)));
+        return axis;
+    }
     const int step = (last - first) / 9 + 1;
     for (int exponent = first; exponent <= last; exponent += step) axis.ticks.emplace_back(std::pow(10.0, exponent), power_of_ten(exponent));
     return axis;

@@ -78,8 +78,8 @@ struct Axis {
     [[nodiscard]] double share(double value) const;
 };
 
-/// From a power of ten below the least value to one above the largest, with a tick at every power or, if these are many, every
-/// second, third and so on.
+/// From below the least value to above the largest, with a tick at every power of ten or, if these are many, every second, third
+/// and so on; over little more than two powers also at 2 and 5 times a power.
 [[nodiscard]] Axis log_axis(std::string label, double least, double most);
 /// From 0.
 [[nodiscard]] Axis linear_axis(std::string label, double most);
@@ -110,7 +110,7 @@ public:
 private:
     Svg svg_;
     Axis x_, y_;
-    double left_ = 56, right_ = 14, top_ = 34, bottom_;
+    double left_ = 56, right_ = 24, top_ = 34, bottom_;
     Legend legend_;
 };
 
