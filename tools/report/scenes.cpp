@@ -11,6 +11,7 @@
 #include <fastccd/isa.hpp>
 #include <tbb/task_arena.h>
 
+#include "../interrupt.hpp"
 #include "../narrow_phase_run.hpp"
 #include "../scene/frames.hpp"
 #include "../scene/make_scene.hpp"
@@ -78,17 +79,26 @@ MovingMesh moving_mesh(const Step& step)
     return mesh;
 }
 
+void find(const Step& step, const VertexFaceSink& sink) { find_vertex_face(step, sink); }
+void find(const Step& step, const EdgeEdgeSink& sink) { find_edge_edge(step, sink); }
+
 /// Of one kind in one step.
 template <class Pair>
-Json kind_json(const Step& step, const MovingMesh& mesh, std::vector<Pair> (*find)(const Step&), std::size_t repeats, bool each_isa)
+Json kind_json(const Step& step, const MovingMesh& mesh, std::size_t repeats, bool each_isa)
 {
     std::vector<Pair> pairs;
     Timing broad, narrow;
-    broad.add(seconds_of([&] { pairs = find(step); }));
+    broad.add(seconds_of([&] {
+        find(step, [&](std::span<const Pair> piece) {
+            check_interrupt();
+            pairs.insert(pairs.end(), piece.begin(), piece.end());
+        });
+    }));
     const std::span<const Pair> candidates{pairs};
     std::vector<Contact> contacts;
     Summary summary;
     const auto answer = [&](const Options& options, int threads) {
+        check_interrupt();
         return seconds_on(threads, [&] {
             contacts.clear();
             throw_unless_ok(find_contacts(mesh, candidates, options, contacts, nullptr, &summary));
@@ -135,8 +145,8 @@ Json scene_json(const Scene& scene, std::size_t repeats, const std::function<voi
         MovingMesh mesh;
         for (std::size_t repeat = 0; repeat < repeats; ++repeat) mesh_timing.add(seconds_of([&] { mesh = moving_mesh(step); }));
         kinds_json["moving_mesh"] = mesh_timing.json();
-        kinds_json["vf"] = kind_json(step, mesh, vertex_face_candidates, repeats, last);
-        kinds_json["ee"] = kind_json(step, mesh, edge_edge_candidates, repeats, last);
+        kinds_json["vf"] = kind_json<VertexFace>(step, mesh, repeats, last);
+        kinds_json["ee"] = kind_json<EdgeEdge>(step, mesh, repeats, last);
         json["steps"].push_back(std::move(kinds_json));
     });
     return json;
