@@ -37,7 +37,7 @@ def report_table():
     peers = "; ".join(f"{peer['name']}: {peer['missed']:,} missed, "
                       + (f"{peer['late']:,} late, " if peer["signed_error"] else "no time, ") + f"{peer['false_alarms']:,} false alarms"
                       for peer in part["vf"]["peers"])
-    lines += ["", f"Random vertex-face pairs (the paper's test), one thread, median of {repeats}; {machine['processor']}, {machine['compiler']}, "
+    lines += ["", f"Random vertex-face pairs (the paper's test), one thread, processor time, median of {repeats}; {machine['processor']}, {machine['compiler']}, "
               f"commit {machine['commit']}. Errors of the time of impact in units of the step, judged by exact truth on the first "
               f"{part['truth_pairs']:,} pairs ({points[1e-9, isas[0]]['contacts']:,} contacts)."
               + (f" Other libraries on the same pairs: {peers}." if peers else "")

@@ -26,9 +26,10 @@ std::string figure(double number)
 std::string how(const Json& timing)
 {
     const auto repeats = timing.at("repeats").get<std::size_t>();
-    if (repeats < 2) return "measured once";
+    const char* const clock = timing.at("clock") == "processor" ? ", processor time" : "";
+    if (repeats < 2) return fmt::format("measured once{}", clock);
     const double median = timing.at("seconds"), spread = timing.at("most").get<double>() - timing.at("least").get<double>();
-    return fmt::format("median of {}, spread {:.2g} %", repeats, median > 0 ? 100 * spread / median : 0.0);
+    return fmt::format("median of {}, spread {:.2g} %{}", repeats, median > 0 ? 100 * spread / median : 0.0, clock);
 }
 
 double million_pairs_per_second(const Json& timing) { return 1e-6 * timing.value("pairs_per_second", 0.0); }

@@ -17,7 +17,7 @@ namespace fastccd::tools::report {
 [[nodiscard]] std::string figure(const Json& number);
 [[nodiscard]] std::string figure(double number);
 
-/// "median of 7, spread 3 %": the spread is between the least and the most, relative to the median.
+/// "median of 7, spread 3 %, processor time": the spread is between the least and the most, relative to the median.
 [[nodiscard]] std::string how(const Json& timing);
 
 /// Pairs per second of a timing, in millions; 0 if it has none.

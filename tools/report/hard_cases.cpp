@@ -64,7 +64,7 @@ Json answer(const HardSet& set, bool exact, std::size_t repeats)
     options.exact = exact;
     std::vector<double> toi(set.pairs.size());
     std::size_t proven = 0, scalar_pairs = 0;
-    Timing timing;
+    Timing timing{Timing::Clock::processor};
     // In one call; but the exact verdict takes long, and Ctrl-C should not wait for all of it.
     const std::size_t size = toi.size(), piece = exact ? std::min<std::size_t>(size, 256) : size;
     for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
@@ -74,7 +74,7 @@ Json answer(const HardSet& set, bool exact, std::size_t repeats)
             check_interrupt();
             const std::size_t end = std::min(first + piece, size);
             Summary summary;
-            seconds += seconds_on(1, [&] {
+            seconds += processor_seconds([&] {
                 throw_unless_ok(time_of_impact(set.kind, slice(set.view(), first, end), options, std::span{toi}.subspan(first, end - first), &summary));
             });
             proven += summary.proven;

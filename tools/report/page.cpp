@@ -121,8 +121,9 @@ std::string html_page(const Json& report, const std::vector<Picture>& pictures)
                       "with the library. Point at a mark in a picture, or open a table, for the figure behind it.");
     html += verdict(report) + machine_list(report);
     html += paragraph("<b>How figures are obtained.</b> Each time is the median of repeated calls, which alternate with the calls they are compared to; the "
-                      "small figure beside it is the spread, largest minus least over median. <i>Missed</i>: contact in truth, not reported. <i>Late</i>: "
-                      "reported after the exact first contact. <i>False alarm</i>: reported, no contact in truth. Errors of the time of impact are in "
+                      "small figure beside it is the spread, largest minus least over median. Times of one thread in parts 1 to 3 are processor time, "
+                      "which other programs on the machine disturb less; all others are by the clock. <i>Missed</i>: contact in truth, not "
+                      "reported. <i>Late</i>: reported after the exact first contact. <i>False alarm</i>: reported, no contact in truth. Errors of the time of impact are in "
                       "units of the step. E_tol is the tolerance, the only one there is.");
 
     html += heading(1, "The paper's random test") + show({"figure_1"}) + paper_tables(report.at("paper_table"));

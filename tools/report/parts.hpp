@@ -1,6 +1,6 @@
 // The five parts of a report, each as JSON: what the page and the pictures are drawn from.
 //
-// A timing is {"seconds": median, "least", "most", "repeats", "pairs_per_second"}; counts of wrong answers are those of
+// A timing is {"seconds": median, "least", "most", "repeats", "clock", "pairs_per_second"}; counts of wrong answers are those of
 // compare() in truth.hpp. All parts throw Interrupted after a signal.
 #pragma once
 
@@ -39,5 +39,9 @@ namespace fastccd::tools::report {
 
 /// Seconds that `work` takes in an arena of that many threads.
 [[nodiscard]] double seconds_on(int threads, const std::function<void()>& work);
+
+/// Processor time of `work` on one thread, the calling one: as on a clock where the machine is quiet, but other programs on it
+/// disturb it less.
+[[nodiscard]] double processor_seconds(const std::function<void()>& work);
 
 }  // namespace fastccd::tools::report

@@ -22,7 +22,7 @@ namespace {
 struct Point {
     Isa isa;
     double tolerance;
-    Timing timing;
+    Timing timing{Timing::Clock::processor};
     Json comparison;
 };
 
@@ -45,13 +45,13 @@ Json peer_json(const peers::NamedPeer& named, const PairBuffer& pairs, const Tru
     for (std::size_t i = 0; i < coordinates.size(); ++i) coordinates[i] = pairs.at(i / pair_coordinates, i % pair_coordinates);
 
     const std::unique_ptr<peers::Peer> peer = named.make();
-    Timing timing;
+    Timing timing{Timing::Clock::processor};
     for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
         double seconds = 0;
         for (std::size_t first = 0; first < size; first += batch) {
             const std::size_t count = std::min(batch, size - first);
             peer->prepare(&coordinates[first * pair_coordinates], count);
-            seconds += seconds_of([&] { peer->run(&toi[first]); });
+            seconds += processor_seconds([&] { peer->run(&toi[first]); });
             if (first % (64 * batch) == 0) progress.move(done, total);
         }
         timing.add(seconds);
@@ -95,14 +95,14 @@ Json kind_json(const Plan& plan, PairKind kind, ReportProgress& progress)
 
     std::vector<Point> points;
     for (const Isa isa : available()) {
-        for (const double tolerance : tolerances) points.push_back({isa, tolerance, {}, {}});
+        for (const double tolerance : tolerances) points.push_back({.isa = isa, .tolerance = tolerance, .comparison = {}});
     }
     std::vector<double> toi(buffer.size());
     const auto answer = [&](const Point& point) {
         Options options;
         options.isa = point.isa;
         options.tolerance = point.tolerance;
-        return seconds_on(1, [&] { throw_unless_ok(time_of_impact(kind, buffer.view(), options, toi)); });
+        return processor_seconds([&] { throw_unless_ok(time_of_impact(kind, buffer.view(), options, toi)); });
     };
     // Rounds over all points, so that all see the same moods of the machine. The first one warms up and gives the answers.
     for (std::size_t round = 0; round <= plan.repeats(); ++round) {

@@ -15,6 +15,10 @@ using Json = nlohmann::ordered_json;
 /// Times of the same work, done again and again.
 class Timing {
 public:
+    enum class Clock { wall, processor };
+
+    explicit Timing(Clock clock = Clock::wall) : clock_{clock} {}
+
     void add(double seconds) { seconds_.push_back(seconds); }
 
     [[nodiscard]] std::size_t repeats() const { return seconds_.size(); }
@@ -28,18 +32,20 @@ public:
         return sorted.size() % 2 == 1 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
     }
 
-    /// {"seconds": median, "least", "most", "repeats"}, and with pairs given "pairs_per_second" by the median.
+    /// {"seconds": median, "least", "most", "repeats", "clock": wall or processor}, and with pairs given "pairs_per_second" by the median.
     [[nodiscard]] Json json(std::size_t pairs = 0) const
     {
         Json json{{"seconds", median()},
                   {"least", seconds_.empty() ? 0.0 : *std::ranges::min_element(seconds_)},
                   {"most", seconds_.empty() ? 0.0 : *std::ranges::max_element(seconds_)},
-                  {"repeats", seconds_.size()}};
+                  {"repeats", seconds_.size()},
+                  {"clock", clock_ == Clock::wall ? "wall" : "processor"}};
         if (pairs > 0 && median() > 0) json["pairs_per_second"] = static_cast<double>(pairs) / median();
         return json;
     }
 
 private:
+    Clock clock_;
     std::vector<double> seconds_;
 };
 
