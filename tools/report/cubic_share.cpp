@@ -70,7 +70,9 @@ CubicShare sum(const Step& step, std::span<const Pair> pairs)
             }
             return total;
         },
-        [](const CubicShare& a, const CubicShare& b) { return CubicShare{a.all_zero + b.all_zero, a.no_cube + b.no_cube}; });
+        [](const CubicShare& a, const CubicShare& b) {
+            return CubicShare{a.all_zero + b.all_zero, a.no_cube + b.no_cube};
+        });
 }
 
 }  // namespace

@@ -75,7 +75,8 @@ Json answer(const HardSet& set, bool exact, std::size_t repeats)
             const std::size_t end = std::min(first + piece, size);
             Summary summary;
             seconds += processor_seconds([&] {
-                throw_unless_ok(time_of_impact(set.kind, slice(set.view(), first, end), options, std::span{toi}.subspan(first, end - first), &summary));
+                throw_unless_ok(time_of_impact(set.kind, slice(set.view(), first, end), options,
+                                               std::span{toi}.subspan(first, end - first), &summary));
             });
             proven += summary.proven;
             scalar_pairs += summary.scalar_pairs;
@@ -99,7 +100,8 @@ Json intervals(const HardSet& set)
         sum += used;
         most = std::max(most, used);
     }
-    return {{"mean", set.pairs.empty() ? 0.0 : static_cast<double>(sum) / static_cast<double>(set.pairs.size())}, {"most", most}};
+    return {{"mean", set.pairs.empty() ? 0.0 : static_cast<double>(sum) / static_cast<double>(set.pairs.size())},
+            {"most", most}};
 }
 
 bool exact_available()

@@ -21,7 +21,7 @@ struct Measure {
     const char* heading[2];
     const char* unit;
     std::optional<double> (*value)(const Json& set);
-    const char* scale;           ///< Measures with the same one have their colours from one scale.
+    const char* scale;          ///< Measures with the same one have their colours from one scale.
     bool always_wrong = false;  ///< Anything but 0 breaks a promise.
 };
 
@@ -38,17 +38,34 @@ std::optional<double> alarm_share(const Json& comparison)
 }
 
 constexpr std::array<Measure, 7> measures{{
-    {{"missed", "or late"}, "pairs missed or late", [](const Json& set) -> std::optional<double> {
+    {{"missed", "or late"},
+     "pairs missed or late",
+     [](const Json& set) -> std::optional<double> {
          return set.at("plain").at("missed").get<double>() + set.at("plain").at("late").get<double>();
-     }, "missed", true},
+     },
+     "missed",
+     true},
     {{"false", "alarms"}, "% false alarms", [](const Json& set) { return alarm_share(set.at("plain")); }, "alarms"},
-    {{"alarms", "--exact"}, "% false alarms with --exact", [](const Json& set) { return alarm_share(set.at("exact")); }, "exact alarms", true},
+    {{"alarms", "--exact"},
+     "% false alarms with --exact",
+     [](const Json& set) { return alarm_share(set.at("exact")); },
+     "exact alarms",
+     true},
     {{"worst", "early"}, "of the step early at worst", [](const Json& set) { return early(set.at("plain")); }, "early"},
-    {{"early", "--exact"}, "of the step early at worst with --exact", [](const Json& set) { return early(set.at("exact")); }, "early"},
-    {{"ns per", "pair"}, "ns per pair", [](const Json& set) -> std::optional<double> {
+    {{"early", "--exact"},
+     "of the step early at worst with --exact",
+     [](const Json& set) { return early(set.at("exact")); },
+     "early"},
+    {{"ns per", "pair"},
+     "ns per pair",
+     [](const Json& set) -> std::optional<double> {
          return 1e9 * set.at("plain").at("timing").at("seconds").get<double>() / std::max(1.0, set.at("pairs").get<double>());
-     }, "time"},
-    {{"most in-", "tervals"}, "intervals at most", [](const Json& set) -> std::optional<double> { return set.at("intervals").at("most").get<double>(); }, "intervals"},
+     },
+     "time"},
+    {{"most in-", "tervals"},
+     "intervals at most",
+     [](const Json& set) -> std::optional<double> { return set.at("intervals").at("most").get<double>(); },
+     "intervals"},
 }};
 
 struct Column {
@@ -100,7 +117,8 @@ Scale scale_of(const Measure& one, const std::vector<Row>& rows)
     return scale;
 }
 
-Picture heat_map(const std::string& name, const std::string& title, const std::vector<Column>& columns, const std::vector<Row>& rows)
+Picture heat_map(const std::string& name, const std::string& title, const std::vector<Column>& columns,
+                 const std::vector<Row>& rows)
 {
     constexpr double top = 84, row_height = 15, gap = 5;
     std::size_t longest = 0;
@@ -109,7 +127,8 @@ Picture heat_map(const std::string& name, const std::string& title, const std::v
     std::vector<const Measure*> shown;  // those that are known of any set
     for (const Measure& measure : measures) {
         const auto known = [&](const Json* set) { return set != nullptr && measure.value(*set); };
-        if (std::ranges::any_of(rows, [&](const Row& row) { return std::ranges::any_of(row.sets, known); })) shown.push_back(&measure);
+        if (std::ranges::any_of(rows, [&](const Row& row) { return std::ranges::any_of(row.sets, known); }))
+            shown.push_back(&measure);
     }
     const double group = (Svg::width - 6 - left) / static_cast<double>(shown.size());
     const double cell = (group - gap) / static_cast<double>(columns.size());
@@ -128,11 +147,13 @@ Picture heat_map(const std::string& name, const std::string& title, const std::v
                 const Json* const set = rows[r].sets[c];
                 const std::optional<double> value = set == nullptr ? std::nullopt : measure.value(*set);
                 if (!value) continue;
-                const std::string css = *value <= 0          ? "none"
+                const std::string css = *value <= 0            ? "none"
                                         : measure.always_wrong ? "wrong"
                                                                : fmt::format("h{}", scale.level(*value));
-                const std::string tooltip = fmt::format("{}, {}: {} {}", rows[r].label, columns[c].name, figure(*value), measure.unit);
-                svg.rectangle({x + 0.5, top + row_height * static_cast<double>(r) + 0.5}, cell - 1, row_height - 1, css, tooltip);
+                const std::string tooltip =
+                    fmt::format("{}, {}: {} {}", rows[r].label, columns[c].name, figure(*value), measure.unit);
+                svg.rectangle({x + 0.5, top + row_height * static_cast<double>(r) + 0.5}, cell - 1, row_height - 1, css,
+                              tooltip);
             }
         }
         svg.text({begin, floor + 17}, scale.most > 0 ? one_digit(scale.least) : "all 0", Anchor::start, "soft");
@@ -163,7 +184,8 @@ std::string without_prefix(const std::string& text, std::string_view prefix)
 
 std::vector<Picture> heat_maps(const Json& hard_cases)
 {
-    const std::vector<Column> by_numbers{{"v", "vertex-face, double"}, {"e", "edge-edge, double"}, {"v", "vertex-face, float"}, {"e", "edge-edge, float"}};
+    const std::vector<Column> by_numbers{
+        {"v", "vertex-face, double"}, {"e", "edge-edge, double"}, {"v", "vertex-face, float"}, {"e", "edge-edge, float"}};
     const std::vector<Column> by_kind{{"vf", "vertex-face"}, {"ee", "edge-edge"}};
     std::vector<Row> made, published, queries;
     for (const Json& set : hard_cases.at("sets")) {
@@ -172,7 +194,8 @@ std::vector<Picture> heat_maps(const Json& hard_cases)
         if (name.starts_with("queries/")) {  // queries/SCENE/vertex-face/data_0_1.csv
             const std::size_t slash = name.find('/', 8), file = name.rfind("data_");
             const std::string number = file == std::string::npos ? "" : name.substr(file + 4, 4);
-            row_of(queries, without_prefix(without_prefix(name.substr(8, slash - 8), "erleben-"), "cube-") + number, 2).sets.at(kind) = &set;
+            row_of(queries, without_prefix(without_prefix(name.substr(8, slash - 8), "erleben-"), "cube-") + number, 2)
+                .sets.at(kind) = &set;
             continue;
         }
         std::vector<Row>& rows = set.at("source") == "generated" ? made : published;
@@ -181,9 +204,13 @@ std::vector<Picture> heat_maps(const Json& hard_cases)
         const std::string family = without_prefix(name, "f32_").substr(0, name.size() - (single ? 7 : 3));
         row_of(rows, family == "momentary_degenerate" ? "momentary_deg." : family, 4).sets[kind + (single ? 2 : 0)] = &set;
     }
-    std::vector<Picture> pictures{heat_map("hard_cases", "Hard cases: made here, truth from the exact oracle", by_numbers, made)};
-    if (!published.empty()) pictures.push_back(heat_map("hard_cases_public", "Hard cases: public data, published truth", by_numbers, published));
-    if (!queries.empty()) pictures.push_back(heat_map("hard_cases_queries", "Handcrafted queries: public data, published truth", by_kind, queries));
+    std::vector<Picture> pictures{
+        heat_map("hard_cases", "Hard cases: made here, truth from the exact oracle", by_numbers, made)};
+    if (!published.empty())
+        pictures.push_back(heat_map("hard_cases_public", "Hard cases: public data, published truth", by_numbers, published));
+    if (!queries.empty())
+        pictures.push_back(
+            heat_map("hard_cases_queries", "Handcrafted queries: public data, published truth", by_kind, queries));
     return pictures;
 }
 

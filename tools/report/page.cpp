@@ -44,15 +44,9 @@ dl{display:grid;grid-template-columns:max-content 1fr;gap:.1rem 1rem;margin:1rem
 </style></head><body>
 )";
 
-std::string heading(int number, const std::string& text)
-{
-    return fmt::format("<h2>{}. {}</h2>\n", number, text);
-}
+std::string heading(int number, const std::string& text) { return fmt::format("<h2>{}. {}</h2>\n", number, text); }
 
-std::string paragraph(const std::string& text)
-{
-    return "<p>" + text + "</p>\n";
-}
+std::string paragraph(const std::string& text) { return "<p>" + text + "</p>\n"; }
 
 std::string machine_list(const Json& report)
 {
@@ -60,14 +54,17 @@ std::string machine_list(const Json& report)
     std::string isas;
     for (const Json& isa : machine.at("isas")) isas += (isas.empty() ? "" : ", ") + isa_label(isa);
     std::string html = "<dl>";
-    const auto entry = [&](std::string_view term, const std::string& text) { html += fmt::format("<dt>{}</dt><dd>{}</dd>", term, escaped(text)); };
-    entry("processor", fmt::format("{}, {} threads, {:.0f} GB of memory", machine.at("processor").get<std::string>(), machine.at("threads").get<int>(),
-                                   1e-9 * machine.at("memory_bytes").get<double>()));
+    const auto entry = [&](std::string_view term, const std::string& text) {
+        html += fmt::format("<dt>{}</dt><dd>{}</dd>", term, escaped(text));
+    };
+    entry("processor", fmt::format("{}, {} threads, {:.0f} GB of memory", machine.at("processor").get<std::string>(),
+                                   machine.at("threads").get<int>(), 1e-9 * machine.at("memory_bytes").get<double>()));
     entry("system", machine.at("system"));
     entry("build", fmt::format("{}, {}", machine.at("compiler").get<std::string>(), machine.at("flags").get<std::string>()));
     entry("instruction sets", fmt::format("{}; used unless said otherwise: {}", isas, isa_label(machine.at("best_isa"))));
     entry("commit", machine.at("commit"));
-    entry("measured", fmt::format("{}, load average {:.1f} at the start{}", machine.at("date").get<std::string>(), machine.at("load_average").get<double>(),
+    entry("measured", fmt::format("{}, load average {:.1f} at the start{}", machine.at("date").get<std::string>(),
+                                  machine.at("load_average").get<double>(),
                                   report.at("quick") == true ? "; quick: fewer pairs and repeats" : ""));
     return html + "</dl>\n";
 }
@@ -95,11 +92,12 @@ std::string verdict(const Json& report)
         exact_pairs += set.at("exact").at("pairs").get<std::size_t>();
         exact_alarms += set.at("exact").at("false_alarms").get<std::size_t>();
     }
-    return fmt::format("<p class=\"verdict\" data-judged=\"all\">Of {} answers judged by exact truth, <b class=\"missed{}\">{}</b> missed a contact and "
-                       "<b class=\"late{}\">{}</b> came late. <b class=\"false-alarms\">{}</b> were false alarms, near misses to within rounding; "
-                       "of the {} answers with the exact verdict, <b class=\"exact-false-alarms{}\">{}</b>.</p>\n",
-                       count(pairs), missed == 0 ? "" : " broken", count(missed), late == 0 ? "" : " broken", count(late), count(alarms),
-                       count(exact_pairs), exact_alarms == 0 ? "" : " broken", count(exact_alarms));
+    return fmt::format(
+        "<p class=\"verdict\" data-judged=\"all\">Of {} answers judged by exact truth, <b class=\"missed{}\">{}</b> missed a "
+        "contact and <b class=\"late{}\">{}</b> came late. <b class=\"false-alarms\">{}</b> were false alarms, near misses "
+        "to within rounding; of the {} answers with the exact verdict, <b class=\"exact-false-alarms{}\">{}</b>.</p>\n",
+        count(pairs), missed == 0 ? "" : " broken", count(missed), late == 0 ? "" : " broken", count(late), count(alarms),
+        count(exact_pairs), exact_alarms == 0 ? "" : " broken", count(exact_alarms));
 }
 
 }  // namespace
@@ -117,28 +115,33 @@ std::string html_page(const Json& report, const std::vector<Picture>& pictures)
 
     std::string html{head};
     html += "<h1>fastccd: speed against error</h1>\n";
-    html += paragraph("Narrow phase of continuous collision detection: measured on the machine below, and judged by an exact oracle that shares no code "
-                      "with the library. Point at a mark in a picture, or open a table, for the figure behind it.");
+    html += paragraph(
+        "Narrow phase of continuous collision detection: measured on the machine below, and judged by an exact oracle that "
+        "shares no code with the library. Point at a mark in a picture, or open a table, for the figure behind it.");
     html += verdict(report) + machine_list(report);
-    html += paragraph("<b>How figures are obtained.</b> Each time is the median of repeated calls, which alternate with the calls they are compared to; the "
-                      "small figure beside it is the spread, largest minus least over median. Times of one thread in parts 1 to 3 are processor time, "
-                      "which other programs on the machine disturb less; all others are by the clock. <i>Missed</i>: contact in truth, not "
-                      "reported. <i>Late</i>: reported after the exact first contact. <i>False alarm</i>: reported, no contact in truth. Errors of the time of impact are in "
-                      "units of the step. E_tol is the tolerance, the only one there is.");
+    html += paragraph(
+        "<b>How figures are obtained.</b> Each time is the median of repeated calls, which in parts 1 and 2 take turns with those "
+        "they are compared to; the small figure beside it is the spread, largest minus least over median. Times of one thread in "
+        "parts 1 to 3 are processor time, which other programs on the machine disturb less; all others are by the clock. "
+        "<i>Missed</i>: contact in truth, not reported. <i>Late</i>: reported after the exact first contact. <i>False "
+        "alarm</i>: reported, no contact in truth. Errors of the time of impact are in units of the step. E_tol is the "
+        "tolerance, the only one there is.");
 
     html += heading(1, "The paper's random test") + show({"figure_1"}) + paper_tables(report.at("paper_table"));
 
     html += heading(2, "Speed against error");
-    html += paragraph("Every mark is one instruction set at one E_tol; figures at marks of the widest set are its E_tol. Right is worse, up is faster; "
-                      "the dashed line, the Pareto front, joins what nothing else beats in both, by worst error. Results are the same bits on every instruction set, so "
-                      "that marks of one E_tol are above each other.");
+    html += paragraph(
+        "Every mark is one instruction set at one E_tol; figures at marks of the widest set are its E_tol. Right is worse, "
+        "up is faster; the dashed line, the Pareto front, joins what nothing else beats in both, by worst error. Results are "
+        "the same bits on every instruction set, so that marks of one E_tol are above each other.");
     html += show({"speed_error_vf", "speed_error_ee"});
     html += speed_error_tables(report.at("speed_and_error"), "vf") + speed_error_tables(report.at("speed_and_error"), "ee");
 
     html += heading(3, "Hard cases");
-    html += paragraph("Families of pairs made to break things: grazing, boundary, coplanar, degenerate, resting, extreme sizes. v: vertex-face, e: edge-edge, "
-                      "first with double, then with float coordinates. The stronger the colour, the more; an empty frame is 0, and the two columns that "
-                      "promises are about must be empty.");
+    html += paragraph(
+        "Families of pairs made to break things: grazing, boundary, coplanar, degenerate, resting, extreme sizes. v: "
+        "vertex-face, e: edge-edge, first with double, then with float coordinates. The stronger the colour, the more; an "
+        "empty frame is 0, and the two columns that promises are about must be empty.");
     html += show({"hard_cases", "hard_cases_public", "hard_cases_queries"}) + hard_case_table(report.at("hard_cases"));
 
     html += heading(4, "Scenes") + show({"scenes"}) + scene_tables(report.at("scenes"));

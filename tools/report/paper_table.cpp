@@ -4,7 +4,6 @@
 #include <optional>
 
 #include <tbb/task_arena.h>
-#include <time.h>
 
 #include <fastccd/isa.hpp>
 
@@ -59,7 +58,8 @@ std::array<Row, tolerances.size()> answer_all(const Plan& plan, PairKind kind, R
                 options.tolerance = tolerances[t];
                 Summary summary;
                 const auto answer = [&] {
-                    throw_unless_ok(time_of_impact(kind, pairs, options, std::span{toi}.first(size), &summary, std::span{roots}.first(size)));
+                    throw_unless_ok(time_of_impact(kind, pairs, options, std::span{toi}.first(size), &summary,
+                                                   std::span{roots}.first(size)));
                 };
                 rows[t].seconds[repeat][0] += processor_seconds(answer);
                 rows[t].seconds[repeat][1] += seconds_on(all_threads, answer);
@@ -69,7 +69,8 @@ std::array<Row, tolerances.size()> answer_all(const Plan& plan, PairKind kind, R
                 rows[t].summary.even += summary.even;
                 rows[t].summary.scalar_pairs += summary.scalar_pairs;
             }
-            progress.move((kind == PairKind::edge_edge ? plan.pairs : 0) + first + size * (repeat + 1) / repeats, 2 * plan.pairs);
+            progress.move((kind == PairKind::edge_edge ? plan.pairs : 0) + first + size * (repeat + 1) / repeats,
+                          2 * plan.pairs);
         }
     }
     return rows;
@@ -106,56 +107,17 @@ Json paper_table(const Plan& plan, ReportProgress& progress)
               {"seed", seed},
               {"isa", name(resolve_isa({}))},
               {"threads", tbb::this_task_arena::max_concurrency()},
-              {"paper", {{"pairs", paper_pairs}, {"exactCCD_odd", 749'985}, {"exactCCD_seconds", 37.4}, {"safeCCD_contacts", 918'663},
-                         {"safeCCD_seconds", 13.6}}}};
+              {"paper",
+               {{"pairs", paper_pairs},
+                {"exactCCD_odd", 749'985},
+                {"exactCCD_seconds", 37.4},
+                {"safeCCD_contacts", 918'663},
+                {"safeCCD_seconds", 13.6}}}};
     for (const PairKind kind : kinds) {
         const auto rows = answer_all(plan, kind, progress);
         for (std::size_t t = 0; t < rows.size(); ++t) json[short_name(kind)].push_back(row_json(plan, kind, t, rows[t]));
     }
     return json;
-}
-
-std::vector<Isa> available()
-{
-    std::vector<Isa> isas;
-    for (const Isa isa : all_isas) {
-        if (isa_available(isa)) isas.push_back(isa);
-    }
-    return isas;
-}
-
-std::vector<int> thread_counts()
-{
-    const int all = tbb::this_task_arena::max_concurrency();
-    std::vector<int> counts;
-    for (int threads = 1; threads < all; threads = threads < 8 ? threads + 1 : 2 * threads) counts.push_back(threads);
-    counts.push_back(all);
-    return counts;
-}
-
-double seconds_on(int threads, const std::function<void()>& work)
-{
-    tbb::task_arena arena{threads};
-    double seconds = 0;
-    arena.execute([&] { seconds = seconds_of(work); });
-    return seconds;
-}
-
-double processor_seconds(const std::function<void()>& work)
-{
-    const auto now = [] {
-        timespec time{};
-        ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-        return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-    };
-    tbb::task_arena arena{1};
-    double seconds = 0;
-    arena.execute([&] {
-        const double start = now();
-        work();
-        seconds = now() - start;
-    });
-    return seconds;
 }
 
 }  // namespace fastccd::tools::report

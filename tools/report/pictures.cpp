@@ -54,8 +54,12 @@ Picture figure_1(const Json& table)
     }
     Axis x = log_axis("E_tol, in units of the step", 1e-13, 1e-6);
     std::swap(x.low, x.high);  // as in the paper: finer to the right
-    Chart chart{"Time for 10 million random pairs against E_tol", "Figure 1 of the paper, on this machine", std::move(x),
-                log_axis("seconds", extent.least, extent.most), 400, 3};
+    Chart chart{"Time for 10 million random pairs against E_tol",
+                "Figure 1 of the paper, on this machine",
+                std::move(x),
+                log_axis("seconds", extent.least, extent.most),
+                400,
+                3};
     chart.level(exact, fmt::format("exactCCD, {:g} s (2014)", exact), Series::grey);
     chart.level(safe, fmt::format("safeCCD, {:g} s (2014)", safe), Series::grey);
 
@@ -71,7 +75,9 @@ Picture figure_1(const Json& table)
     const auto one = [&](const Json& row) { return seconds(row, "one_thread"); };
     const auto all = [&](const Json& row) { return seconds(row, "all_threads"); };
     const std::string threads = fmt::format("{} threads", table.at("threads").get<int>());
-    add("vf", Series::vermilion, true, [](const Json& row) { return row.at("paper").at("seconds").get<double>(); }, "the paper, vertex-face (2014)");
+    add(
+        "vf", Series::vermilion, true, [](const Json& row) { return row.at("paper").at("seconds").get<double>(); },
+        "the paper, vertex-face (2014)");
     add("vf", Series::blue, false, one, "vertex-face, 1 thread");
     add("vf", Series::sky, false, all, "vertex-face, " + threads);
     add("ee", Series::green, false, one, "edge-edge, 1 thread");
@@ -104,7 +110,9 @@ Picture speed_error(const Json& part, const std::string& kind)
     const double right_end = x.high;
     Chart chart{fmt::format("Speed against error: {} pairs", kind_label(kind)),
                 "Pairs per second on one thread against the error of the time of impact, for every instruction set and E_tol",
-                std::move(x), log_axis("million pairs per second, one thread", speeds.least, 1.25 * speeds.most), 400 + 18.0 * static_cast<double>(peers.size()),
+                std::move(x),
+                log_axis("million pairs per second, one thread", speeds.least, 1.25 * speeds.most),
+                400 + 18.0 * static_cast<double>(peers.size()),
                 2 + peers.size()};
 
     std::vector<Point> front;
@@ -116,8 +124,10 @@ Picture speed_error(const Json& part, const std::string& kind)
 
     const auto mark = [&](const Json& point, Series series, const std::string& name) {
         const double rate = million_pairs_per_second(point.at("timing"));
-        const std::string tooltip = fmt::format("{}: {:.3g} M pairs/s ({}); {}", name, rate, how(point.at("timing")), wrong_answers(point));
-        if (point.at("absolute_error").is_null()) return chart.points({{right_end, rate}}, series, {tooltip + "; gives no time"});
+        const std::string tooltip =
+            fmt::format("{}: {:.3g} M pairs/s ({}); {}", name, rate, how(point.at("timing")), wrong_answers(point));
+        if (point.at("absolute_error").is_null())
+            return chart.points({{right_end, rate}}, series, {tooltip + "; gives no time"});
         const double median = error(point, "median"), worst = error(point, "worst");
         chart.svg().whisker(chart.at(median, rate), chart.at(worst, rate), series);
         chart.points({{median, rate}}, series, {fmt::format("{}; error median {:.2g}, worst {:.2g}", tooltip, median, worst)});
@@ -133,7 +143,8 @@ Picture speed_error(const Json& part, const std::string& kind)
             chart.legend(series_of_isa(isa), isa_label(isa));
         }
         const int exponent = static_cast<int>(std::lround(std::log10(tolerance)));
-        if (isa != best || exponent % 2 == 0 || point.at("absolute_error").is_null()) continue;  // every second: side by side they overlap
+        if (isa != best || exponent % 2 == 0 || point.at("absolute_error").is_null())
+            continue;  // every second: side by side they overlap
         const Point at = chart.at(error(point, "median"), million_pairs_per_second(point.at("timing")));
         chart.svg().text({at.x, at.y - 10}, power_of_ten(exponent), Anchor::middle, "soft");
     }
@@ -143,12 +154,16 @@ Picture speed_error(const Json& part, const std::string& kind)
         late += point.at("late").get<std::size_t>();
         false_alarms += point.at("false_alarms").get<std::size_t>();
     }
-    chart.legend_note(fmt::format("each at E_tol 10⁻⁶, 10⁻⁷ … 10⁻¹³: {} missed, {} late, {} false alarms", missed, late, false_alarms));
+    chart.legend_note(
+        fmt::format("each at E_tol 10⁻⁶, 10⁻⁷ … 10⁻¹³: {} missed, {} late, {} false alarms", missed, late, false_alarms));
     for (const Json& peer : peers) {
         const std::string name = peer.at("name");
-        const Series series = name.starts_with("bullet") ? Series::sky : name.ends_with("newton") ? Series::purple : Series::vermilion;
+        const Series series = name.starts_with("bullet") ? Series::sky
+                              : name.ends_with("newton") ? Series::purple
+                                                         : Series::vermilion;
         mark(peer, series, name);
-        chart.legend(series, fmt::format("{}: {}{}", name, peer.at("absolute_error").is_null() ? "no time, " : "", wrong_answers(peer)));
+        chart.legend(
+            series, fmt::format("{}: {}{}", name, peer.at("absolute_error").is_null() ? "no time, " : "", wrong_answers(peer)));
     }
     return {"speed_error_" + kind, chart.str()};
 }
@@ -185,7 +200,8 @@ Picture scene_speeds(const Json& part)
     const double floor = top + row_height * static_cast<double>(rows.size());
     const Axis x = log_axis("million pairs per second", extent.least, extent.most);
     const auto place = [&](double rate) { return left + x.share(rate) * (Svg::width - 22 - left); };
-    Svg svg{"Scenes: speed of every instruction set", "Pairs per second on candidates of scenes, and the paper's own", floor + 84};
+    Svg svg{"Scenes: speed of every instruction set", "Pairs per second on candidates of scenes, and the paper's own",
+            floor + 84};
     for (const auto& [value, name] : x.ticks) {
         svg.line({place(value), top}, {place(value), floor}, "grid");
         svg.text({place(value), floor + 16}, name, Anchor::middle, "soft");
@@ -198,7 +214,8 @@ Picture scene_speeds(const Json& part)
             const double rate = million_pairs_per_second(*timing);
             svg.marker({place(rate), y}, series, fmt::format("{}: {:.3g} M pairs/s ({})", rows[i].label, rate, how(*timing)));
         }
-        if (rows[i].paper > 0) svg.marker({place(rows[i].paper), y}, Series::vermilion, fmt::format("{:.3g} M pairs/s", rows[i].paper));
+        if (rows[i].paper > 0)
+            svg.marker({place(rows[i].paper), y}, Series::vermilion, fmt::format("{:.3g} M pairs/s", rows[i].paper));
     }
     svg.text({(left + Svg::width) / 2, floor + 34}, x.label, Anchor::middle);
     Legend legend{svg, 14, floor + 58};
@@ -219,9 +236,11 @@ Picture threads(const Json& part)
     }
     const int most = part.at("threads");
     Axis x{0.5, most + 0.5, false, "threads", {}};
-    for (const Json& point : over.at("random_vf").at("points")) x.ticks.emplace_back(point.at("threads").get<double>(), std::to_string(point.at("threads").get<int>()));
-    Chart chart{"Threads", "Pairs per second against the number of threads", std::move(x),
-                linear_axis("million pairs per second", extent.most), 320, 2};
+    for (const Json& point : over.at("random_vf").at("points"))
+        x.ticks.emplace_back(point.at("threads").get<double>(), std::to_string(point.at("threads").get<int>()));
+    Chart chart{"Threads",    "Pairs per second against the number of threads",
+                std::move(x), linear_axis("million pairs per second", extent.most),
+                320,          2};
     const auto add = [&](const char* key, Series series, const std::string& name) {
         std::vector<Point> points;
         std::vector<std::string> tooltips;
@@ -246,14 +265,19 @@ Picture against_pairs(const Json& part, const char* name, const char* title, con
     for (const char* key : {"in_memory", "piece_by_piece"}) {
         for (const Json& point : over.at(key)) pairs.add(point.at("pairs")), values.add(value(point));
     }
-    Chart chart{title, "Against the number of random vertex-face pairs", log_axis("pairs", pairs.least, pairs.most),
-                log_axis(label, values.least, values.most), 320, 2};
+    Chart chart{title,
+                "Against the number of random vertex-face pairs",
+                log_axis("pairs", pairs.least, pairs.most),
+                log_axis(label, values.least, values.most),
+                320,
+                2};
     const auto add = [&](const char* key, Series series, const char* legend) {
         std::vector<Point> points;
         std::vector<std::string> tooltips;
         for (const Json& point : over.at(key)) {
             points.push_back({point.at("pairs"), value(point)});
-            tooltips.push_back(fmt::format("{} pairs: {:.3g} {} ({})", count(point.at("pairs")), points.back().y, label, how(point.at("timing"))));
+            tooltips.push_back(fmt::format("{} pairs: {:.3g} {} ({})", count(point.at("pairs")), points.back().y, label,
+                                           how(point.at("timing"))));
         }
         if (!points.empty()) draw(chart, points, series, false, legend, tooltips);
     };
@@ -284,12 +308,12 @@ std::vector<Picture> draw_pictures(const Json& report)
     pictures.push_back(scene_speeds(report.at("scenes")));
     const Json& scaling = report.at("scaling");
     pictures.push_back(threads(scaling));
-    pictures.push_back(against_pairs(scaling, "pairs", "Time per pair against the number of pairs", "nanoseconds per pair", [](const Json& point) {
-        return 1e9 * point.at("timing").at("seconds").get<double>() / point.at("pairs").get<double>();
-    }));
-    pictures.push_back(against_pairs(scaling, "memory", "Resident memory against the number of pairs", "megabytes", [](const Json& point) {
-        return 1e-6 * point.at("resident_bytes").get<double>();
-    }));
+    pictures.push_back(against_pairs(
+        scaling, "pairs", "Time per pair against the number of pairs", "nanoseconds per pair", [](const Json& point) {
+            return 1e9 * point.at("timing").at("seconds").get<double>() / point.at("pairs").get<double>();
+        }));
+    pictures.push_back(against_pairs(scaling, "memory", "Resident memory against the number of pairs", "megabytes",
+                                     [](const Json& point) { return 1e-6 * point.at("resident_bytes").get<double>(); }));
     return pictures;
 }
 

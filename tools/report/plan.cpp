@@ -16,7 +16,8 @@ void ReportProgress::begin(const std::string& name, double share)
     part_begin_ = part_end_;
     part_end_ = std::min(1.0, part_begin_ + share);
     bar_.set_place(name);
-    if (enabled_ && ::isatty(STDERR_FILENO) == 0) write_all(STDERR_FILENO, fmt::format("fastccd report: {}\n", name), "standard error");
+    if (enabled_ && ::isatty(STDERR_FILENO) == 0)
+        write_all(STDERR_FILENO, fmt::format("fastccd report: {}\n", name), "standard error");
 }
 
 void ReportProgress::move(std::size_t done, std::size_t total)

@@ -20,10 +20,7 @@ inline constexpr std::array<PairKind, 2> kinds{PairKind::vertex_face, PairKind::
 inline constexpr std::uint64_t seed = 1;
 
 /// "vf", "ee": as the command line has it.
-[[nodiscard]] constexpr const char* short_name(PairKind kind) noexcept
-{
-    return kind == PairKind::vertex_face ? "vf" : "ee";
-}
+[[nodiscard]] constexpr const char* short_name(PairKind kind) noexcept { return kind == PairKind::vertex_face ? "vf" : "ee"; }
 
 struct Plan {
     bool quick = false;

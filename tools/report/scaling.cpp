@@ -42,14 +42,15 @@ Json over_threads(const Plan& plan, ReportProgress& progress)
     const std::vector<double> start = cloth.positions(0), end = cloth.positions(1);
     const std::vector<Edge> edges = unique_edges(cloth.faces());
     const std::vector<EdgeEdge> candidates = edge_edge_candidates({start, end, cloth.faces(), edges});
-    const MovingMesh mesh{PositionView::rows(start.data(), start.size() / 3), PositionView::rows(end.data(), end.size() / 3), {},
+    const MovingMesh mesh{PositionView::rows(start.data(), start.size() / 3),
+                          PositionView::rows(end.data(), end.size() / 3),
+                          {},
                           IndexView::rows(edges[0].data(), edges.size(), 2)};
     std::vector<Contact> contacts;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         progress.move(i, 2 * counts.size());
-        const Timing packed = timed(counts[i], [&] {
-            throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi));
-        });
+        const Timing packed =
+            timed(counts[i], [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi)); });
         const Timing indexed = timed(counts[i], [&] {
             contacts.clear();
             throw_unless_ok(find_contacts(mesh, std::span{candidates}, {}, contacts));
@@ -67,7 +68,8 @@ Json in_memory(std::size_t count, int threads)
     PairBuffer pairs{count};
     fill_random_pairs(seed, 0, pairs);
     std::vector<double> toi(count);
-    const Timing timing = timed(threads, [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi)); });
+    const Timing timing =
+        timed(threads, [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi)); });
     return {{"pairs", count}, {"timing", timing.json(count)}, {"resident_bytes", resident_memory()}};
 }
 
@@ -98,7 +100,8 @@ Json over_pairs(const Plan& plan, ReportProgress& progress)
     // A quarter of the machine's memory: others live here too.
     const std::size_t fits = system_memory() / 4 / (pair_coordinates * sizeof(double));
     std::vector<std::size_t> counts;
-    for (std::size_t count = 1000; count <= std::max<std::size_t>(plan.most_pairs(), 1000); count *= 10) counts.push_back(count);
+    for (std::size_t count = 1000; count <= std::max<std::size_t>(plan.most_pairs(), 1000); count *= 10)
+        counts.push_back(count);
     Json memory = Json::array(), pieces = Json::array();
     const std::size_t total = 2 * counts.size();
     for (std::size_t i = 0; i < counts.size(); ++i) {

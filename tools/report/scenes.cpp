@@ -110,10 +110,10 @@ Json kind_json(const Step& step, const MovingMesh& mesh, std::size_t repeats, bo
         if (repeat > 0) narrow.add(seconds);
     }
     const CubicShare share = cubic_share(step, candidates);
-    Json json{{"candidates", pairs.size()},     {"contacts", summary.contacts},
-              {"proven", summary.proven},       {"certified_search", summary.scalar_pairs},
-              {"all_zero", share.all_zero},     {"no_cube", share.no_cube},
-              {"broad_phase", broad.json()},    {"narrow_phase", narrow.json(pairs.size())}};
+    Json json{{"candidates", pairs.size()},  {"contacts", summary.contacts},
+              {"proven", summary.proven},    {"certified_search", summary.scalar_pairs},
+              {"all_zero", share.all_zero},  {"no_cube", share.no_cube},
+              {"broad_phase", broad.json()}, {"narrow_phase", narrow.json(pairs.size())}};
     if (!each_isa) return json;
     json["speeds"] = Json::array();
     for (const Isa isa : available()) {
@@ -132,7 +132,8 @@ Json kind_json(const Step& step, const MovingMesh& mesh, std::size_t repeats, bo
 
 Json scene_json(const Scene& scene, std::size_t repeats, const std::function<void(std::size_t)>& done)
 {
-    Json json{{"name", scene.name}, {"source", scene.source}, {"vertices", 0}, {"faces", 0}, {"edges", 0}, {"steps", Json::array()}};
+    Json json{{"name", scene.name}, {"source", scene.source}, {"vertices", 0}, {"faces", 0},
+              {"edges", 0},         {"steps", Json::array()}};
     std::size_t number = 0;
     scene.for_each_step([&](const Step& step) {
         done(number++);
@@ -157,8 +158,13 @@ Json paper_scenes()
 {
     const auto row = [](const char* name, int frames, std::size_t pairs, double all_zero, double no_cube, std::size_t contacts,
                         double seconds) {
-        return Json{{"name", name},       {"frames", frames},     {"candidates", pairs}, {"all_zero_share", all_zero},
-                    {"no_cube_share", no_cube}, {"contacts", contacts}, {"seconds", seconds}};
+        return Json{{"name", name},
+                    {"frames", frames},
+                    {"candidates", pairs},
+                    {"all_zero_share", all_zero},
+                    {"no_cube_share", no_cube},
+                    {"contacts", contacts},
+                    {"seconds", seconds}};
     };
     return {row("Lion", 44, 227'217'729, 0.00001, 0.05, 1'734'172, 35.6),
             row("Cloth-ball", 93, 31'170'312, 0.11, 0.003, 65'182, 6.4),

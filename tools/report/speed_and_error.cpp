@@ -36,8 +36,8 @@ Json json(const Point& point, std::size_t pairs)
 #if defined(FASTCCD_HAVE_PEERS)
 
 /// A peer on the pairs that have exact truth.
-Json peer_json(const peers::NamedPeer& named, const PairBuffer& pairs, const Truth& truth, std::size_t repeats, ReportProgress& progress,
-               std::size_t done, std::size_t total)
+Json peer_json(const peers::NamedPeer& named, const PairBuffer& pairs, const Truth& truth, std::size_t repeats,
+               ReportProgress& progress, std::size_t done, std::size_t total)
 {
     constexpr std::size_t batch = 128;  // so that its own structures, up to 2 KB a pair, stay in cache
     const std::size_t size = truth.contact.size();

@@ -41,12 +41,12 @@ const char* css_name(Series series)
 const char* shape(Series series)
 {
     switch (series) {
-        case Series::blue: return "M0-6L6 0L0 6L-6 0Z";                    // diamond
-        case Series::orange: return "M0-5.5L5.5 4.5H-5.5Z";                // triangle
-        case Series::green: return "M-4.5-4.5H4.5V4.5H-4.5Z";              // square
-        case Series::vermilion: return "M-4.5-4.5L4.5 4.5M-4.5 4.5L4.5-4.5";  // cross
-        case Series::purple: return "M0-5.5V5.5M-5.5 0H5.5";               // plus
-        case Series::sky: return "M0 5.5L5.5-4.5H-5.5Z";                   // triangle on its tip
+        case Series::blue: return "M0-6L6 0L0 6L-6 0Z";                                // diamond
+        case Series::orange: return "M0-5.5L5.5 4.5H-5.5Z";                            // triangle
+        case Series::green: return "M-4.5-4.5H4.5V4.5H-4.5Z";                          // square
+        case Series::vermilion: return "M-4.5-4.5L4.5 4.5M-4.5 4.5L4.5-4.5";           // cross
+        case Series::purple: return "M0-5.5V5.5M-5.5 0H5.5";                           // plus
+        case Series::sky: return "M0 5.5L5.5-4.5H-5.5Z";                               // triangle on its tip
         case Series::grey: return "M-4.5 0A4.5 4.5 0 1 0 4.5 0A4.5 4.5 0 1 0-4.5 0Z";  // circle
     }
     return "";
@@ -76,9 +76,10 @@ std::string escaped(std::string_view text)
 
 Svg::Svg(std::string_view title, std::string_view description, double height) : height_{height}
 {
-    body_ = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"p\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
-                        "role=\"img\" aria-label=\"{2}\">\n<desc>{3}</desc>\n{4}",
-                        width, height, escaped(title), escaped(description), style);
+    body_ = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"p\" viewBox=\"0 0 {0:g} {1:g}\" width=\"{0:g}\" height=\"{1:g}\" "
+        "role=\"img\" aria-label=\"{2}\">\n<desc>{3}</desc>\n{4}",
+        width, height, escaped(title), escaped(description), style);
     rectangle({0, 0}, width, height, "s");
     text({14, 20}, title, Anchor::start, "title");
 }
@@ -97,8 +98,8 @@ void Svg::path(const std::vector<Point>& points, Series series, bool dashed)
 
 void Svg::rectangle(Point corner, double w, double h, std::string_view css_class, std::string_view tooltip)
 {
-    body_ += fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\">{}</rect>\n", css_class, corner.x,
-                         corner.y, w, h, title_element(tooltip));
+    body_ += fmt::format("<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\">{}</rect>\n",
+                         css_class, corner.x, corner.y, w, h, title_element(tooltip));
 }
 
 void Svg::text(Point at, std::string_view content, Anchor anchor, std::string_view css_class)
@@ -117,19 +118,20 @@ void Svg::rotated_text(Point at, std::string_view content, double degrees, Ancho
 void Svg::marker(Point at, Series series, std::string_view tooltip)
 {
     const bool open = series == Series::vermilion || series == Series::purple;
-    body_ += fmt::format("<g class=\"{}\" transform=\"translate({:.1f} {:.1f})\"><path class=\"{}\" d=\"{}\"/>{}</g>\n", css_name(series), at.x,
-                         at.y, open ? "cross" : "mark", shape(series), title_element(tooltip));
+    body_ += fmt::format("<g class=\"{}\" transform=\"translate({:.1f} {:.1f})\"><path class=\"{}\" d=\"{}\"/>{}</g>\n",
+                         css_name(series), at.x, at.y, open ? "cross" : "mark", shape(series), title_element(tooltip));
 }
 
 void Svg::whisker(Point from, Point to, Series series)
 {
-    body_ += fmt::format("<g class=\"{}\"><path class=\"whisker\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/></g>\n", css_name(series), from.x, from.y,
-                         to.x, to.y);
+    body_ += fmt::format("<g class=\"{}\"><path class=\"whisker\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/></g>\n", css_name(series),
+                         from.x, from.y, to.x, to.y);
 }
 
 double Axis::share(double value) const
 {
-    const double s = logarithmic ? std::log(std::max(value, 1e-300) / low) / std::log(high / low) : (value - low) / (high - low);
+    const double s =
+        logarithmic ? std::log(std::max(value, 1e-300) / low) / std::log(high / low) : (value - low) / (high - low);
     return std::clamp(s, 0.0, 1.0);
 }
 
@@ -168,11 +170,13 @@ Axis log_axis(std::string label, double least, double most)
         while (one_two_five(high - 1) >= most && low < high - 1) --high;
         axis.low = one_two_five(low);
         axis.high = one_two_five(high);
-        for (int step = low; step <= high; ++step) axis.ticks.emplace_back(one_two_five(step), fmt::format("{:g}", one_two_five(step)));
+        for (int step = low; step <= high; ++step)
+            axis.ticks.emplace_back(one_two_five(step), fmt::format("{:g}", one_two_five(step)));
         return axis;
     }
     const int step = (last - first) / 9 + 1;
-    for (int exponent = first; exponent <= last; exponent += step) axis.ticks.emplace_back(std::pow(10.0, exponent), power_of_ten(exponent));
+    for (int exponent = first; exponent <= last; exponent += step)
+        axis.ticks.emplace_back(std::pow(10.0, exponent), power_of_ten(exponent));
     return axis;
 }
 
@@ -186,7 +190,10 @@ Axis linear_axis(std::string label, double most)
 }
 
 Chart::Chart(std::string_view title, std::string_view description, Axis x, Axis y, double height, std::size_t legend_lines)
-    : svg_{title, description, height}, x_{std::move(x)}, y_{std::move(y)}, bottom_{46 + 18 * static_cast<double>(legend_lines)},
+    : svg_{title, description, height},
+      x_{std::move(x)},
+      y_{std::move(y)},
+      bottom_{46 + 18 * static_cast<double>(legend_lines)},
       legend_{svg_, 14, height - 18 * static_cast<double>(legend_lines) + 8}
 {
     const double floor = height - bottom_, wall = Svg::width - right_;
@@ -254,9 +261,6 @@ void Legend::add(Series series, std::string_view name)
     svg_.text({at.x + 16, at.y}, name);
 }
 
-void Legend::note(std::string_view text)
-{
-    svg_.text(advance(text, 0), text, Anchor::start, "soft");
-}
+void Legend::note(std::string_view text) { svg_.text(advance(text, 0), text, Anchor::start, "soft"); }
 
 }  // namespace fastccd::tools::report

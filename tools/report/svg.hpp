@@ -92,7 +92,8 @@ class Chart {
 public:
     Chart(const Chart&) = delete;
     Chart& operator=(const Chart&) = delete;
-    Chart(std::string_view title, std::string_view description, Axis x, Axis y, double height = 360, std::size_t legend_lines = 1);
+    Chart(std::string_view title, std::string_view description, Axis x, Axis y, double height = 360,
+          std::size_t legend_lines = 1);
 
     [[nodiscard]] Point at(double x, double y) const;
     [[nodiscard]] Svg& svg() { return svg_; }

@@ -27,10 +27,7 @@ double percentile(const std::vector<double>& sorted, double share)
 }
 
 /// toi minus exact time: negative is early. Exact but for less than one unit in the last place.
-double signed_error(double toi, double t_lo, double t_hi)
-{
-    return toi > t_lo ? toi - t_hi : toi - t_lo;
-}
+double signed_error(double toi, double t_lo, double t_hi) { return toi > t_lo ? toi - t_hi : toi - t_lo; }
 
 }  // namespace
 
@@ -81,17 +78,11 @@ Json compare(const Truth& truth, std::span<const double> toi)
         errors.push_back(signed_error(toi[i], truth.t_lo[i], truth.t_hi[i]));
     }
 
-    Json json{{"pairs", truth.contact.size()},
-              {"contacts", contacts},
-              {"reported", reported},
-              {"missed", missed.size()},
-              {"late", late.size()},
-              {"false_alarms", false_alarms.size()},
-              {"missed_pairs", std::move(missed)},
-              {"late_pairs", std::move(late)},
-              {"false_alarm_pairs", std::move(false_alarms)},
-              {"signed_error", nullptr},
-              {"absolute_error", nullptr}};
+    Json json{
+        {"pairs", truth.contact.size()},     {"contacts", contacts},          {"reported", reported},
+        {"missed", missed.size()},           {"late", late.size()},           {"false_alarms", false_alarms.size()},
+        {"missed_pairs", std::move(missed)}, {"late_pairs", std::move(late)}, {"false_alarm_pairs", std::move(false_alarms)},
+        {"signed_error", nullptr},           {"absolute_error", nullptr}};
     if (errors.empty()) return json;
     std::ranges::sort(errors);
     json["signed_error"] = {{"earliest", errors.front()},

@@ -27,7 +27,8 @@ struct Truth {
 
 /// Asks the oracle about pairs [0, count), on all threads of the caller's arena. `done` hears how many are decided, from the
 /// calling thread, and may throw.
-[[nodiscard]] Truth exact_truth(PairKind kind, const PairView& pairs, std::size_t count, const std::function<void(std::size_t)>& done);
+[[nodiscard]] Truth exact_truth(PairKind kind, const PairView& pairs, std::size_t count,
+                                const std::function<void(std::size_t)>& done);
 
 /// An answer, pair by pair a time (+inf: none; NaN: contact at a time not told), held against the truth. As JSON:
 ///   pairs, contacts (in truth), reported
