@@ -2,11 +2,11 @@
 
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <string_view>
 
 #include <fastccd/isa.hpp>
+#include <report/machine.hpp>
 
 #include "bench_table.hpp"
 
@@ -16,28 +16,11 @@ namespace {
 
 bool any_failed = false;
 
-/// The values of /proc/cpuinfo for the first processor; a virtual machine may hide the model's name but not its number.
-std::string processor()
-{
-    std::ifstream info("/proc/cpuinfo");
-    std::string name, family, model;
-    for (std::string line; std::getline(info, line) && !line.empty();) {
-        const std::size_t colon = line.find(": ");
-        if (colon == std::string::npos) continue;
-        const std::string value = line.substr(colon + 2);
-        if (line.starts_with("model name")) name = value;
-        else if (line.starts_with("cpu family")) family = value;
-        else if (line.starts_with("model")) model = value;
-    }
-    if (name.empty()) return "unknown";
-    return family.empty() ? name : name + " (family " + family + ", model " + model + ")";
-}
-
 void add_context()
 {
     std::string isas;
     for (const Isa isa : available_isas()) isas.append(isas.empty() ? "" : " ").append(fastccd::name(isa));
-    benchmark::AddCustomContext("cpu", processor());
+    benchmark::AddCustomContext("cpu", tools::report::processor());
     benchmark::AddCustomContext("isas", isas);
     benchmark::AddCustomContext("best_isa", fastccd::name(best_isa()));
 #if defined(__clang__)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Puts recorded results between the markers of the repository's README.md, so that no figure in it is typed.
 
+report: results/report/report.json, what `tools/report.sh --record` measured
 run:   results/run.txt, what tools/run.sh printed
 truth: results/truth.txt, what truth_test printed
 sets:  the same, a row per set, with and without the exact verdict
@@ -12,6 +13,37 @@ import re
 
 results = pathlib.Path(__file__).parent / "results"
 readme = pathlib.Path(__file__).parent.parent / "README.md"
+
+
+def report_table():
+    """Speed against error: vertex-face pairs, a row for each E_tol, a column of speeds for each instruction set."""
+    report = json.loads((results / "report" / "report.json").read_text())
+    part, machine = report["speed_and_error"], report["machine"]
+    labels = {"avx512": "AVX-512", "avx2": "AVX2", "sse2": "SSE2", "neon": "NEON", "scalar": "scalar"}
+    isas = machine["isas"]
+    points = {(point["tolerance"], point["isa"]): point for point in part["vf"]["points"]}
+    sets = report["hard_cases"]["sets"]
+    hard = sum(s["pairs"] for s in sets)
+    wrong = {key: sum(s["plain"][key] for s in sets) for key in ("missed", "late", "false_alarms")}
+    lines = ["| E_tol | " + " | ".join(f"{labels[isa]}, M pairs/s" for isa in isas) + " | early: median | worst | missed | late | false alarms |",
+             "|---|" + "---|" * (len(isas) + 5)]
+    for tolerance in sorted({tolerance for tolerance, _ in points}, reverse=True):
+        of_all = [points[tolerance, isa] for isa in isas]
+        errors = of_all[-1]["signed_error"]
+        lines.append("| " + " | ".join([f"{tolerance:g}", *(f"{point['timing']['pairs_per_second'] / 1e6:.1f}" for point in of_all),
+                                        f"{-errors['median']:.1e}", f"{-errors['earliest']:.1e}",
+                                        *(str(max(point[key] for point in of_all)) for key in ("missed", "late", "false_alarms"))]) + " |")
+    repeats = of_all[-1]["timing"]["repeats"]
+    peers = "; ".join(f"{peer['name']}: {peer['missed']:,} missed, "
+                      + (f"{peer['late']:,} late, " if peer["signed_error"] else "no time, ") + f"{peer['false_alarms']:,} false alarms"
+                      for peer in part["vf"]["peers"])
+    lines += ["", f"Random vertex-face pairs (the paper's test), one thread, processor time, median of {repeats}; {machine['processor']}, {machine['compiler']}, "
+              f"commit {machine['commit']}. Errors of the time of impact in units of the step, judged by exact truth on the first "
+              f"{part['truth_pairs']:,} pairs ({points[1e-9, isas[0]]['contacts']:,} contacts)."
+              + (f" Other libraries on the same pairs: {peers}." if peers else "")
+              + f" Hard cases, {hard:,} pairs in {len(sets)} sets: {wrong['missed']} missed, {wrong['late']} late, {wrong['false_alarms']:,} false alarms, "
+              f"with `--exact` {sum(s['exact']['false_alarms'] for s in sets if s['exact'])}."]
+    return "\n".join(lines)
 
 
 def run_output():
@@ -76,7 +108,7 @@ def speed_table():
 
 
 text = readme.read_text()
-for mark, content in (("run.sh", run_output()), ("truth", truth_table()), ("sets", set_table()), ("speed", speed_table())):
+for mark, content in (("report", report_table()), ("run.sh", run_output()), ("truth", truth_table()), ("sets", set_table()), ("speed", speed_table())):
     begin, end = f"<!-- {mark} begin -->", f"<!-- {mark} end -->"
     head, rest = text.split(begin)
     text = head + begin + "\n" + content + "\n" + end + rest.split(end)[1]

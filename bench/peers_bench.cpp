@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -12,15 +13,17 @@
 #include <tbb/task_arena.h>
 
 #include <fastccd/fastccd.hpp>
+#include <peers/peers.hpp>
 
 #include "bench_main.hpp"
 #include "bench_table.hpp"
 #include "datasets.hpp"
-#include "peers.hpp"
 
 namespace fastccd::bench {
 
 namespace {
+
+using peers::NamedPeer, peers::Peer;
 
 /// Larger sets are thinned out evenly to about this.
 constexpr std::size_t sampled_pairs = 400'000;
@@ -71,16 +74,17 @@ void run_peer(benchmark::State& state, const NamedPeer& named, const std::string
         clock::duration elapsed{};
         for (std::size_t first = 0; first < pairs.size(); first += batch_pairs) {
             const std::size_t count = std::min(batch_pairs, pairs.size() - first);
-            std::array<bool, batch_pairs> touches{};
+            std::array<double, batch_pairs> toi{};
             peer->prepare(&pairs.coordinates[first * pair_coordinates], count);
             const auto begin = clock::now();
-            peer->run(touches.data());
+            peer->run(toi.data());
             elapsed += clock::now() - begin;
             for (std::size_t i = 0; i < count; ++i) {
                 const bool ours = pairs.toi[first + i] <= 1.0;
-                contacts += touches[i];
-                missed += ours && !touches[i];
-                extra += touches[i] && !ours;
+                const bool theirs = !std::isinf(toi[i]);  // NaN: contact, at a time not told
+                contacts += theirs;
+                missed += ours && !theirs;
+                extra += theirs && !ours;
             }
         }
         state.SetIterationTime(std::chrono::duration<double>(elapsed).count());
@@ -109,8 +113,8 @@ void run_fastccd(benchmark::State& state, const std::string& data, PairKind kind
 
 void register_benchmarks(bool)
 {
-    std::vector<NamedPeer> peers = fcl_peers();
-    for (NamedPeer& peer : bullet_peers()) peers.push_back(peer);
+    std::vector<NamedPeer> all = peers::fcl_peers();
+    for (NamedPeer& peer : peers::bullet_peers()) all.push_back(peer);
     const auto add = [](PairKind kind, const std::string& peer, const std::string& data, auto run) {
         const std::string full_name = std::string("peer/").append(name(kind)) + "/" + peer + "/" + data;
         benchmark::RegisterBenchmark(full_name.c_str(), run)->UseManualTime()->Unit(benchmark::kMillisecond);
@@ -120,7 +124,7 @@ void register_benchmarks(bool)
             if (data != "random" && data != "generated" && data != "cloth-ball") continue;
             add(kind, std::string("fastccd-") + fastccd::name(best_isa()), data,
                 [=](benchmark::State& state) { run_fastccd(state, data, kind); });
-            for (const NamedPeer& peer : peers)
+            for (const NamedPeer& peer : all)
                 if (peer.kind == kind)
                     add(kind, peer.name, data, [=](benchmark::State& state) { run_peer(state, peer, data); });
         }

@@ -19,6 +19,9 @@ void add_scene_command(CLI::App& app);
 /// `fastccd make-scene`: frames for those who have none.
 void add_make_scene_command(CLI::App& app);
 
+/// `fastccd report`: speed against error on this machine.
+void add_report_command(CLI::App& app);
+
 /// `fastccd isa`: instruction sets of this build and machine.
 void add_isa_command(CLI::App& app);
 

@@ -56,6 +56,7 @@ constexpr const char* footer = R"(Examples:
   fastccd make-scene cloth-ball --size 100 --frames 10 cloth/
   fastccd scene cloth/frame_*.ply --hits contacts.csv
   fastccd scene a.obj b.obj --save-pairs pairs/ --json
+  fastccd report --quick --out report/
   fastccd isa
 
 Exit status: 0 all pairs answered, invalid input by name; 1 a file cannot be used;
@@ -85,6 +86,7 @@ int main(int argc, char** argv)
     add_run_command(app);
     add_scene_command(app);
     add_make_scene_command(app);
+    add_report_command(app);
     add_isa_command(app);
 
     try {

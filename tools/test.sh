@@ -13,6 +13,8 @@ if [ "${1:-}" = --all ]; then
 fi
 
 install_packages "${library_packages[@]}" "${tool_packages[@]}" "${test_packages[@]}" "${bench_packages[@]}"
+# To look at the page of `fastccd report`; without it one test skips.
+install_packages chromium || printf '\n!! No chromium: the page of the report is NOT LOOKED AT.\n' >&2
 configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=ON -DFASTCCD_WERROR=ON
 
 data=${FASTCCD_DATA:-$root/../shared/data}

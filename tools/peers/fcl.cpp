@@ -2,11 +2,12 @@
 
 #if defined(FASTCCD_HAVE_FCL)
 #include <array>
+#include <limits>
 
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 #endif
 
-namespace fastccd::bench {
+namespace fastccd::peers {
 
 #if defined(FASTCCD_HAVE_FCL)
 
@@ -33,16 +34,18 @@ public:
             }
     }
 
-    void run(bool* touches) override
+    void run(double* toi) override
     {
         double time = 0;
         Point where = Point::Zero();
         for (std::size_t i = 0; i < pairs_.size(); ++i) {
             const auto& p = pairs_[i];
+            bool touches = false;
             if constexpr (kind == PairKind::vertex_face)
-                touches[i] = Test::intersect_VF(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], &time, &where, newton);
+                touches = Test::intersect_VF(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], &time, &where, newton);
             else
-                touches[i] = Test::intersect_EE(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], &time, &where, newton);
+                touches = Test::intersect_EE(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], &time, &where, newton);
+            toi[i] = touches ? time : std::numeric_limits<double>::infinity();
         }
     }
 
@@ -73,4 +76,4 @@ std::vector<NamedPeer> fcl_peers() { return {}; }
 
 #endif
 
-}  // namespace fastccd::bench
+}  // namespace fastccd::peers

@@ -1,11 +1,13 @@
 #include "peers.hpp"
 
 #if defined(FASTCCD_HAVE_BULLET)
+#include <limits>
+
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyInternals.h>
 #endif
 
-namespace fastccd::bench {
+namespace fastccd::peers {
 
 #if defined(FASTCCD_HAVE_BULLET)
 
@@ -42,11 +44,13 @@ public:
         }
     }
 
-    void run(bool* touches) override
+    void run(double* toi) override
     {
         btVector3 barycentric;
         for (std::size_t i = 0; i < pairs_.size(); ++i)
-            touches[i] = bernsteinCCD(&pairs_[i].face, &pairs_[i].vertex, 1.0, SAFE_EPSILON, barycentric);
+            toi[i] = bernsteinCCD(&pairs_[i].face, &pairs_[i].vertex, 1.0, SAFE_EPSILON, barycentric)
+                         ? std::numeric_limits<double>::quiet_NaN()
+                         : std::numeric_limits<double>::infinity();
     }
 
 private:
@@ -67,4 +71,4 @@ std::vector<NamedPeer> bullet_peers() { return {}; }
 
 #endif
 
-}  // namespace fastccd::bench
+}  // namespace fastccd::peers
