@@ -1,4 +1,4 @@
-// A unit vector along which two primitives are about as far apart as they are in space, and their distance.
+// A unit vector along which two primitives are about as far apart as they are in space, and how far that is.
 //
 // The distance of two convex sets is the largest of min n . (b - a) over unit vectors n, with a and b the vertices of
 // the first and the second one: any n gives a lower bound, the one along the shortest vector between them the distance
@@ -110,8 +110,9 @@ inline constexpr double smallest_square = 0x1p-600;
 
 template <class L>
 struct Separation {
-    Vector3<L> n;       ///< Unit vector from the first to the second primitive; 0 where they touch.
-    L square_distance;  ///< Of two points, one of each primitive (SeparationBounds::distance).
+    Vector3<L> n;      ///< Unit vector from the first to the second primitive; 0 where they touch.
+    L gap;             ///< Lower bound of the distance along it, to within rounding.
+    L square_to_side;  ///< See square_distance.
 };
 
 /// Least heights of the second primitive over the first along v and along -v.
@@ -137,17 +138,14 @@ FASTCCD_INLINE Separation<L> separation(const Vector3<L> (&r)[3])
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     ShortestVector<L> shortest;
     Vector3<L> normal;
-    L square_distance;
     if constexpr (kind == PairKind::vertex_face) {
         const Vector3<L> side[3] = {subtract(r[1], r[0]), subtract(r[2], r[1]), subtract(r[0], r[2])};
         shortest = to_nearest_side(r, side);
         normal = cross(side[0], side[1]);
-        square_distance = min(shortest.square, square_to_inside(r, normal));
     } else {
         const Vector3<L> second = subtract(r[2], r[1]);
         shortest = between_edges(r, second);
         normal = cross(r[0], second);
-        square_distance = shortest.square;
     }
     const Gaps<L> of_normal = gaps<kind>(normal, r);
     const L gap = max(gaps<kind>(shortest.upright, r).along, zero);
@@ -159,7 +157,17 @@ FASTCCD_INLINE Separation<L> separation(const Vector3<L> (&r)[3])
     const L v_square = select<L>(along_normal, normal_square, square);
     const L sign = select<L>(along_normal & less(of_normal.along, of_normal.against), zero - one, one);
     const L inverse = select<L>(less(broadcast<L>(smallest_square), v_square), sign / sqrt(v_square), zero);
-    return {scaled(v, inverse), square_distance};
+    return {scaled(v, inverse), select<L>(along_normal, normal_gap, gap) * abs(inverse), shortest.square};
+}
+
+/// Square of the distance of two points, one of each primitive (SeparationBounds::distance): the nearest ones.
+template <PairKind kind, class L>
+FASTCCD_INLINE L square_distance(const Vector3<L> (&r)[3], const Separation<L>& seen)
+{
+    if constexpr (kind == PairKind::edge_edge)
+        return seen.square_to_side;
+    else
+        return min(seen.square_to_side, square_to_inside(r, cross(subtract(r[1], r[0]), subtract(r[2], r[1]))));
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

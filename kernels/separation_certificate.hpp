@@ -120,8 +120,8 @@ FASTCCD_INLINE Reach<L> reach(const RelativeMotion<L>& r, const Vector3<L>& n, L
 /// What is seen of a pair at one time.
 template <class L>
 struct Sight {
-    Vector3<L> n;
-    L distance;  ///< Within SeparationBounds::distance above or any amount below: of two points of the primitives.
+    Vector3<L> at[3];  ///< The positions.
+    Separation<L> separation;
     Reach<L> reach;
 };
 
@@ -129,10 +129,12 @@ template <PairKind kind, class L>
 FASTCCD_INLINE Sight<L> look(const RelativeMotion<L>& r, const Extents<L>& e, L time, const SeparationParameters& parameters,
                              const SeparationBounds& bounds)
 {
-    const Vector3<L> at[3] = {position(r, 0, time), position(r, 1, time), position(r, 2, time)};
-    const Separation<L> seen = separation<kind>(at);
-    const L threshold = threshold_along(seen.n, e, parameters, bounds.height(kind));
-    return {seen.n, sqrt(seen.square_distance), reach<kind>(r, seen.n, threshold)};
+    Sight<L> sight;
+    for (int i = 0; i < 3; ++i) sight.at[i] = position(r, i, time);
+    sight.separation = separation<kind>(sight.at);
+    const Vector3<L>& n = sight.separation.n;
+    sight.reach = reach<kind>(r, n, threshold_along(n, e, parameters, bounds.height(kind)));
+    return sight;
 }
 
 /// The vector that turns evenly from the unit vector n at time a to m at b proves a distance above d on [a, b].

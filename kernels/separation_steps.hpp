@@ -32,7 +32,7 @@ struct SeparationRecord {
     Vector3<L> n;  ///< Vector at `time`,
     L high;        ///< how far it reaches,
     L interval;    ///< and the time to look ahead at most; 0: any.
-    L last_time, last_distance;  ///< The last time the search had got to, and the distance then.
+    L last_time, last_gap;  ///< The last time the search had got to, and the distance then, from below.
 };
 
 /// Purposes of a look: to go on from `time`; to go on from there to `at` while turning; to prove contact found at `time`.
@@ -70,7 +70,7 @@ FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const SearchPar
     pair.purpose = broadcast<L>(going_on);
     pair.at = pair.time;
     pair.n = {zero, zero, zero};
-    pair.high = pair.interval = pair.last_time = pair.last_distance = zero;
+    pair.high = pair.interval = pair.last_time = pair.last_gap = zero;
     return less_equal(one, pair.time);
 }
 
@@ -90,13 +90,15 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParame
     const SeparationBounds bounds{parameters.bounds.rho};
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     const Sight<L> sight = look<kind>(pair.r, pair.extents, pair.at, wanted, bounds);
+    const Vector3<L>& n = sight.separation.n;
+    const L gap = sight.separation.gap;
     pair.looks = pair.looks + one;
 
     const LaneMask<L> to_prove = less_equal(broadcast<L>(proving), pair.purpose);
     const LaneMask<L> was_ahead = less_equal(broadcast<L>(looking_ahead), pair.purpose) & !to_prove;
     LaneMask<L> turned = was_ahead;
     if (Lane<L>::bits(was_ahead) != 0)
-        turned = was_ahead & farther_while_turning<kind>(pair.r, pair.extents, pair.n, pair.time, sight.n, pair.at, wanted, bounds);
+        turned = was_ahead & farther_while_turning<kind>(pair.r, pair.extents, pair.n, pair.time, n, pair.at, wanted, bounds);
     const LaneMask<L> too_far = was_ahead & !turned;
 
     // The look is at the time reached, but for a look too far ahead.
@@ -112,7 +114,12 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParame
     // At time 0 a pair that is farther than d gets a positive time, however close it is.
     const L size = sum(pair.extents);
     const L close = broadcast<L>(wanted.stop) + broadcast<L>(SeparationParameters::resolution) * size;
-    const LaneMask<L> near = certified & less(zero, time) & less_equal(sight.distance, close);
+    // Few batches need the distance from above; lanes that do not must not depend on the others.
+    const LaneMask<L> measured = less_equal(gap, close) | to_prove;
+    L distance = broadcast<L>(__builtin_inf());
+    if (Lane<L>::bits(measured) != 0)
+        distance = select<L>(measured, sqrt(square_distance<kind>(sight.at, sight.separation)), distance);
+    const LaneMask<L> near = certified & less(zero, time) & less_equal(distance, close);
     const LaneMask<L> advancing = certified & !near & less(time * broadcast<L>(1.0 + 0x1p-50), next) &
                                   less(pair.looks, broadcast<L>(most_looks));
     const LaneMask<L> found = here & !(advancing | at_start);
@@ -123,25 +130,25 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParame
     const L interval = select<L>(stretching & less(doubled, reach + reach), broadcast<L>(first_stretch) * reach, doubled);
     // Where the distance falls, the line through the last two times and distances tells when it will be close.
     const L aim = broadcast<L>(wanted.aim) + broadcast<L>(0.5 * SeparationParameters::resolution) * size;
-    const L fall = pair.last_distance - sight.distance;
+    const L fall = pair.last_gap - gap;
     const LaneMask<L> falling = less(zero, fall);
-    const L until_close = (sight.distance - aim) * ((time - pair.last_time) / fall);
+    const L until_close = (gap - aim) * ((time - pair.last_time) / fall);
     const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
     const L ahead = min(time + span, one);
     const LaneMask<L> look_ahead = advancing & (stretching | (falling & less(reach, span))) & less(next, ahead);
     const L later = min(time + select<L>(near, broadcast<L>(proof_stretch) * reach, broadcast<L>(parameters.leaf_width)), one);
 
-    pair.n = sight.n;
+    pair.n = n;
     pair.high = high;
     pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), interval);
     pair.last_time = select<L>(here, time, pair.last_time);
-    pair.last_distance = select<L>(here, sight.distance, pair.last_distance);
+    pair.last_gap = select<L>(here, gap, pair.last_gap);
     pair.time = select<L>(too_far | (advancing & !look_ahead), next, time);
     pair.at = select<L>(found, later, select<L>(look_ahead, ahead, pair.time));
     pair.purpose = select<L>(found, broadcast<L>(proving), select<L>(look_ahead, broadcast<L>(looking_ahead), broadcast<L>(going_on)));
 
     const LaneMask<L> certain =
-        less_equal(sight.distance, broadcast<L>(wanted.certain) - broadcast<L>(bounds.distance()) * size);
+        less_equal(distance, broadcast<L>(wanted.certain) - broadcast<L>(bounds.distance()) * size);
     const LaneMask<L> contact = to_prove | at_start;
     return {farther, contact, contact & certain};
 }

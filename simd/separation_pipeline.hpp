@@ -31,7 +31,7 @@ FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit 
     visit(record.time), visit(record.window_low), visit(record.window_high);
     visit(record.looks), visit(record.purpose), visit(record.at);
     visit(record.n.x), visit(record.n.y), visit(record.n.z), visit(record.high), visit(record.interval);
-    visit(record.last_time), visit(record.last_distance);
+    visit(record.last_time), visit(record.last_gap);
 }
 
 template <PairKind kind, class L>
@@ -112,7 +112,7 @@ private:
         const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
         if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
         const unsigned kept = decidable & ~Lane<L>::bits(farther);
-        if (2 * static_cast<unsigned>(__builtin_popcount(kept)) >= width)
+        if (3 * static_cast<unsigned>(__builtin_popcount(kept)) >= 2 * width)
             look_first(record, kept);
         else if (kept != 0)
             push(scratch.separating, kept, record);

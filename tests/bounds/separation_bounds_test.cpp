@@ -141,7 +141,7 @@ void expect_certificates_hold(std::uint64_t seed)
         const SeparationBounds bounds{c.bounds.rho};
         const auto distance_at = [&](double s) {
             const Vector3<double> at[3] = {portable::position(c.r, 0, s), portable::position(c.r, 1, s), portable::position(c.r, 2, s)};
-            return std::sqrt(portable::separation<kind>(at).square_distance);
+            return std::sqrt(portable::square_distance<kind>(at, portable::separation<kind>(at)));
         };
         const double share = 1.0 - std::ldexp(adversary.uniform(0.5, 1), -adversary.integer(1, 50));
         const double d = share * distance_at(in.a);
@@ -151,16 +151,16 @@ void expect_certificates_hold(std::uint64_t seed)
         const double low = std::max(sight.reach.low, 0.0), high = std::min(sight.reach.high, 1.0);
         if (low < high) {
             for (const double s : {low, high, low + 0.5 * (high - low)})
-                ASSERT_TRUE(proves<kind>(in, sight.n, d, s)) << s << ' ' << d << ' ' << text(in);
+                ASSERT_TRUE(proves<kind>(in, sight.separation.n, d, s)) << s << ' ' << d << ' ' << text(in);
             (low == 0.0 && high == 1.0 ? whole : ends) += 1;
         }
         const auto other = portable::look<kind>(c.r, extents, in.b, wanted, bounds);
-        if (in.a < in.b && portable::farther_while_turning<kind>(c.r, extents, sight.n, in.a, other.n, in.b, wanted, bounds).value) {
+        if (in.a < in.b && portable::farther_while_turning<kind>(c.r, extents, sight.separation.n, in.a, other.separation.n, in.b, wanted, bounds).value) {
             ++turning;
-            ASSERT_TRUE(proves<kind>(in, sight.n, d, in.a) && proves<kind>(in, other.n, d, in.b)) << d << ' ' << text(in);
+            ASSERT_TRUE(proves<kind>(in, sight.separation.n, d, in.a) && proves<kind>(in, other.separation.n, d, in.b)) << d << ' ' << text(in);
             // In between n is computed here with rounding, which at distances this far above d does not matter.
             for (const double w : {0.25, 0.5, 0.75}) {
-                const auto mixed = portable::add(portable::scaled(sight.n, 1.0 - w), portable::scaled(other.n, w));
+                const auto mixed = portable::add(portable::scaled(sight.separation.n, 1.0 - w), portable::scaled(other.separation.n, w));
                 const bool holds = proves<kind>(in, mixed, 0.999 * d, in.a + w * (in.b - in.a));
                 ASSERT_TRUE(holds) << w << ' ' << d << ' ' << text(in);
             }
