@@ -38,7 +38,7 @@ def report_table():
                       + (f"{peer['late']:,} late, " if peer["signed_error"] else "no time, ") + f"{peer['false_alarms']:,} false alarms"
                       for peer in part["vf"]["peers"])
     lines += ["", f"Random vertex-face pairs (the paper's test), one thread, processor time, median of {repeats}; {machine['processor']}, {machine['compiler']}, "
-              f"commit {machine['commit']}. Errors of the time of impact in units of the step, judged by exact truth on the first "
+              f"commit {machine['commit']}, load average {machine['load_average']:.1f}. Errors of the time of impact in units of the step, judged by exact truth on the first "
               f"{part['truth_pairs']:,} pairs ({points[1e-9, isas[0]]['contacts']:,} contacts)."
               + (f" Other libraries on the same pairs: {peers}." if peers else "")
               + f" Hard cases, {hard:,} pairs in {len(sets)} sets: {wrong['missed']} missed, {wrong['late']} late, {wrong['false_alarms']:,} false alarms, "

@@ -66,7 +66,12 @@ std::string machine_list(const Json& report)
     entry("measured", fmt::format("{}, load average {:.1f} at the start{}", machine.at("date").get<std::string>(),
                                   machine.at("load_average").get<double>(),
                                   report.at("quick") == true ? "; quick: fewer pairs and repeats" : ""));
-    return html + "</dl>\n";
+    html += "</dl>\n";
+    if (machine.at("load_average").get<double>() < 0.5 * machine.at("threads").get<double>()) return html;
+    return html + paragraph(
+                      "<b>The machine was busy with other work.</b> Times by the clock, those of several threads above all, "
+                      "are longer "
+                      "than they need be; processor times and counts are not.");
 }
 
 /// All judged answers of this library together.
@@ -120,8 +125,10 @@ std::string html_page(const Json& report, const std::vector<Picture>& pictures)
         "shares no code with the library. Point at a mark in a picture, or open a table, for the figure behind it.");
     html += verdict(report) + machine_list(report);
     html += paragraph(
-        "<b>How figures are obtained.</b> Each time is the median of repeated calls, which in parts 1 and 2 take turns with those "
-        "they are compared to; the small figure beside it is the spread, largest minus least over median. Times of one thread in "
+        "<b>How figures are obtained.</b> Each time is the median of repeated calls, which in parts 1 and 2 take turns with "
+        "those "
+        "they are compared to; the small figure beside it is the spread, largest minus least over median. Times of one thread "
+        "in "
         "parts 1 to 3 are processor time, which other programs on the machine disturb less; all others are by the clock. "
         "<i>Missed</i>: contact in truth, not reported. <i>Late</i>: reported after the exact first contact. <i>False "
         "alarm</i>: reported, no contact in truth. Errors of the time of impact are in units of the step. E_tol is the "

@@ -111,7 +111,7 @@ Picture speed_error(const Json& part, const std::string& kind)
     Chart chart{fmt::format("Speed against error: {} pairs", kind_label(kind)),
                 "Pairs per second on one thread against the error of the time of impact, for every instruction set and E_tol",
                 std::move(x),
-                log_axis("million pairs per second, one thread", speeds.least, 1.25 * speeds.most),
+                log_axis("million pairs per second, one thread", 0.9 * speeds.least, 1.25 * speeds.most),
                 400 + 18.0 * static_cast<double>(peers.size()),
                 2 + peers.size()};
 
@@ -233,6 +233,7 @@ Picture threads(const Json& part)
     const Json& over = part.at("over_threads");
     for (const Json& series : over) {
         for (const Json& point : series.at("points")) extent.add(million_pairs_per_second(point.at("timing")));
+        extent.add(part.at("threads").get<double>() * million_pairs_per_second(series.at("points").at(0).at("timing")));
     }
     const int most = part.at("threads");
     Axis x{0.5, most + 0.5, false, "threads", {}};
