@@ -80,6 +80,12 @@ TEST(CollisionFreeStep, IsTheMinimumOverBothKinds)
     expect_step({}, {}, {});
     expect_step(faces, {}, {});
     expect_step({}, edges, {});
+    for (const double separation : {1e-6, 1e-2}) {
+        Options apart;
+        apart.minimum_separation = separation;
+        expect_step(faces, edges, apart);
+        expect_step(without_early(oracle::Kind::vertex_face, faces, 0.5), without_early(oracle::Kind::edge_edge, edges, 0.5), apart);
+    }
 }
 
 TEST(CollisionFreeStep, TiesGoToVertexFaceThenToTheSmallerIndexOnAnyThreadCount)

@@ -23,20 +23,24 @@ TEST(SinglePair, SameBitsAsTheBatch)
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
             generate(family, kind, 81, 60, pairs);
-            for (const double tolerance : {1e-3, 1e-9})
+            for (const double separation : {0.0, 1e-3})
                 for (const double t_max : {1.0, 0.4}) {
+                    const double tolerance = t_max == 1.0 ? 1e-9 : 1e-3;
                     Options options;
+                    options.minimum_separation = separation;
                     options.tolerance = tolerance;
                     options.t_max = t_max;
                     const Answer batch = answer(kind, interleaved(pairs), options);
-                    std::size_t proven = 0;
+                    std::size_t proven = 0, at_start = 0;
                     for (std::size_t i = 0; i < pairs.size(); ++i) {
                         const PairToi found = single(kind, pairs[i], options);
                         ASSERT_TRUE(found.status.ok());
                         ASSERT_EQ(std::memcmp(&found.toi, &batch.toi[i], sizeof(double)), 0)
                             << kind_name(kind) << ' ' << family << ' ' << lossless(pairs[i]);
                         proven += found.proven;
+                        at_start += found.at_start;
                     }
+                    EXPECT_EQ(at_start, batch.summary.at_start) << kind_name(kind) << ' ' << family;
                     EXPECT_EQ(proven, batch.summary.proven) << kind_name(kind) << ' ' << family;
                 }
         }
