@@ -79,8 +79,8 @@ double motion_ratio(const Input& in)
     const auto bounds = portable::motion_bounds<double>(c.r);
     const ExactRelativeMotion r{in.x.data(), in.t_max};
     double worst = 0.0;
-    for (int i = 0; i < 3; ++i)
-        for (int k = i; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = i; k < 3; ++k) {
             const auto difference = [&](double s) { return i == k ? r.at(i, s) : r.at(k, s) - r.at(i, s); };
             for (const double s : {0.0, in.a, in.b, 1.0}) worst = std::max(worst, wide_norm(difference(s)).get_d() / bounds.edge);
             worst = std::max(worst, wide_norm(difference(1.0) - difference(0.0)).get_d() / bounds.speed);
