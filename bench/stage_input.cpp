@@ -63,7 +63,7 @@ bool passes_certificates(const Coordinates& pair, const SearchParameters& parame
     const auto apart = visit_edge_functions<kind>(record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
         return quadratic_certificate<kind>(p, q, t, s, record.scale, bounds);
     });
-    return !apart.value && in_lane_range(record.cubic, extents).value;
+    return !apart.value && in_lane_range(record.cubic, extents, parameters.bounds).value;
 }
 
 /// Fills in the first piece in which the cubic changes sign; false if there is none for certain.

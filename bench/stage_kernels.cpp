@@ -80,7 +80,7 @@ unsigned certificates(const bench::StageInput& input)
                                     r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
                                         return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
                                     });
-            kept += count(Lane<L>::bits(in_lane_range(cubic, extents)) & ~Lane<L>::bits(apart));
+            kept += count(Lane<L>::bits(in_lane_range(cubic, extents, input.parameters->bounds)) & ~Lane<L>::bits(apart));
         }
     return kept;
 }

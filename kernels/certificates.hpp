@@ -179,10 +179,10 @@ FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, co
 /// component of every r_i is a factor of f0 or f3, and a product with a NaN or an infinity is one,
 /// so f0 and f3 are finite only if all input is.
 template <class L>
-FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e)
+FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e, const ErrorBounds& bounds)
 {
     return less(abs(f.start) + abs(f.end), broadcast<L>(largest_extent * largest_extent * largest_extent * 16)) &
-           less(max(e.x, e.y, e.z), broadcast<L>(largest_extent));
+           less(max(e.x, e.y, e.z), broadcast<L>(bounds.largest_lane_extent));
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

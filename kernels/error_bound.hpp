@@ -22,16 +22,28 @@ struct CertificateBounds {
     double cubic, quadratic, quadratic_sum, linear;
 };
 
+/// Axes on which the coordinates of a pair differ by more are scaled down by the certified search.
+inline constexpr double largest_extent = 0x1p100;
+
 /// Bounds of one call; they depend on t_max alone. All are factors that multiply u times a product
 /// of extents, u included: |computed - exact| <= bound * product.
 struct ErrorBounds {
     static constexpr double u = 0x1p-53;
     static constexpr double slack = 2.0;
 
-    explicit constexpr ErrorBounds(double t_max) : rho{t_max == 1.0 ? 1.0 : 10.0} {}
+    explicit constexpr ErrorBounds(double t_max)
+        : rho{t_max == 1.0 ? 1.0 : 10.0}, largest_lane_extent{t_max == 1.0 ? largest_extent : 0.25 * largest_extent * t_max}
+    {
+    }
 
     /// Error of a component of r_i at an end of the interval, in units of u X.
     double rho;
+
+    /// Pairs with larger extents are left to the certified search. It scales axes on which coordinates differ by more than
+    /// largest_extent down, and a gap that underflows then is no gap for it, while lanes would see it. The differences p and q
+    /// at both ends of the step are to be below: with t_max != 1 extents E bound p and r(t_max) = (1 - t_max) p + t_max q, so
+    /// |q| <= 2 E / t_max; a quarter of it covers roundings.
+    double largest_lane_extent;
 
     // ---- Bernstein coefficients over the whole interval -----------------------------------------
 
@@ -180,10 +192,9 @@ struct ErrorBounds {
 };
 
 /// Absolute floors under the products of extents. Lanes take pairs whose coordinates differ by less
-/// than `largest_extent`; a product of two components that underflows errs by at most 2^-1075, times
+/// than largest_extent; a product of two components that underflows errs by at most 2^-1075, times
 /// a third component below 2^-945, some twenty times: far below u 2^-800. Pairs at or below the floors
 /// are never certified by the lanes and go to the scalar path, which scales each axis by a power of two.
-inline constexpr double largest_extent = 0x1p130;
 inline constexpr double volume_floor = 0x1p-800;
 inline constexpr double area_floor = 0x1p-900;
 /// Smallest V for which discriminants (degree 2 in V) cannot underflow.

@@ -4,13 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include <error_bound.hpp>
+
 namespace fastccd::scalar {
 
 namespace {
 
 /// Extents beyond these make degree-3 products (and their squares) leave the range of double.
 constexpr double smallest_unscaled = 0x1p-100;
-constexpr double largest_unscaled = 0x1p100;
+constexpr double largest_unscaled = largest_extent;
 
 /// Multiplies the eight coordinates of one axis so that their differences have an extent near 1, if needed.
 /// Scaling down may round tiny coordinates to multiples of 2^-1074. Rounding is monotone, so no difference

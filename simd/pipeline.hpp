@@ -116,7 +116,7 @@ private:
         const LaneMask<L> separated = linear_certificate<kind>(record.r, whole, extents);
         record.scale = scales(extents);
         record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
-        const unsigned in_range = Lane<L>::bits(in_lane_range(record.cubic, extents));
+        const unsigned in_range = Lane<L>::bits(in_lane_range(record.cubic, extents, parameters.bounds));
         const unsigned apart = Lane<L>::bits(separated | cubic_certificate(record.cubic, record.scale.volume, whole));
         return {in_range & ~apart, all_lanes(width) & ~in_range};
     }

@@ -44,7 +44,7 @@ std::string lane_proof(const oracle::Pair& pair, const SearchParameters& paramet
     const bool linear = portable::linear_certificate<kind>(r, bounds.certificates(), extents).value;
     const auto scale = portable::scales(extents);
     const auto cubic = portable::coplanarity_cubic(r, portable::cross_product(r, 0, 1));
-    if (!portable::in_lane_range(cubic, extents).value) return {};
+    if (!portable::in_lane_range(cubic, extents, bounds).value) return {};
     if (linear) return "linear";
     if (portable::cubic_certificate(cubic, scale.volume, bounds.certificates()).value) return "cubic";
     const auto in_projections = [&](const portable::RelativeMotion<double>& motion, const CertificateBounds& chosen) {

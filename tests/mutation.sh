@@ -136,7 +136,7 @@ mutant 'search: near misses not halved' scalar/leaf_search.hpp 's/pair\.apart\(i
 mutant 'search: no area certificate' $search 's/return area_certificate<kind>\(r, scale, i\.a \+ half, half, bounds\)\.value/return half < 0/' nothing_invented_test same_bits_test
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/\(s \* t_max\) \* \(1\.0 - 0x1p-52\)/s * t_max/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
-mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = 0x1p100/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
+mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
 
 # ---- Area inclusion loosened
 # Not among them, because nothing observable changes: the term delta^2 C2^2 / 2: C1 bounds the edges at every time of the

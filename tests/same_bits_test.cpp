@@ -207,6 +207,22 @@ TEST(SameBits, AnyLaneAndAnyNeighbours)
     }
 }
 
+/// A gap far below the extent of its axis, which scaling that axis down makes vanish: no business of the lanes.
+TEST(SameBits, GapThatUnderflowsWhenScaled)
+{
+    const oracle::Pair pair{{{-0x1p121, 0x1p-1060, 0}, {0x1p-1030, 0x1p-1030, 0}, {0x1p-1031, 0, 0}, {0x1p-1040, 0x1p-1040, 0},
+                             {0, 0x1p-1040, 0x1p-1026}, {0x1p-1026, 0, 0x1p-1028}, {0x1p-1026, 0, 0.5}, {0.5, 0.0131, 0.2}}};
+    for (const auto kind : kinds)
+        for (const double extent : {0x1p99, 0x1p101, 0x1p121, 0x1p129, 0x1p500})
+            for (const double t_max : {1.0, 0.25, 0x1p-30}) {
+                oracle::Pair wide = pair;
+                wide[0][0] = -extent;
+                expect_same_on_every_isa(kind, interleaved({wide}), 0x1p-42, kind_name(kind), t_max);
+                std::swap(wide[0], wide[4]);  // wide at the end, out of sight of a short step
+                expect_same_on_every_isa(kind, interleaved({wide}), 0x1p-42, kind_name(kind), t_max);
+            }
+}
+
 TEST(SameBits, PowerOfTwoScalePerAxis)
 {
     for (const auto kind : kinds)
