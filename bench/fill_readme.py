@@ -81,6 +81,19 @@ def set_table():
     return "\n".join(rows)
 
 
+def proven_table():
+    """Contacts of the public scenes in the recorded report, and how many of them are proven."""
+    record = json.loads((results / "report" / "report.json").read_text())
+    rows = ["| scene | contacts | proven |", "|---|---|---|"]
+    for scene in record["scenes"]["scenes"]:
+        if scene["source"] != "data":
+            continue
+        kinds = [step[kind] for step in scene["steps"] for kind in ("vf", "ee")]
+        contacts, proven = (sum(kind[count] for kind in kinds) for count in ("contacts", "proven"))
+        rows.append(f"| {scene['name']} | {contacts:,} | {proven:,} |")
+    return "\n".join(rows)
+
+
 def speed_table():
     """The end-to-end medians of one thread in the latest record: packed and indexed pairs, per instruction set."""
     records = [json.loads(path.read_text()) for path in results.glob("*.json")]
@@ -108,7 +121,7 @@ def speed_table():
 
 
 text = readme.read_text()
-for mark, content in (("report", report_table()), ("run.sh", run_output()), ("truth", truth_table()), ("sets", set_table()), ("speed", speed_table())):
+for mark, content in (("report", report_table()), ("run.sh", run_output()), ("truth", truth_table()), ("sets", set_table()), ("proven", proven_table()), ("speed", speed_table())):
     begin, end = f"<!-- {mark} begin -->", f"<!-- {mark} end -->"
     head, rest = text.split(begin)
     text = head + begin + "\n" + content + "\n" + end + rest.split(end)[1]
