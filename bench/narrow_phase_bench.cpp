@@ -6,16 +6,19 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <tbb/task_arena.h>
 
+#include <checked_source.hpp>
 #include <fastccd/fastccd.hpp>
 
 #include "bench_main.hpp"
@@ -193,19 +196,37 @@ void run(benchmark::State& state, const Case& c)
 }
 
 /// Turning positions into a MovingMesh is not part of the indexed cases: it is done once per step for both kinds.
-void run_moving_mesh(benchmark::State& state, const std::string& data)
+void make_mesh(const SceneStep& scene, double& seconds)
+{
+    const auto begin = std::chrono::steady_clock::now();
+    const MovingMesh mesh = moving_mesh(scene);
+    benchmark::DoNotOptimize(mesh.records());
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+/// Nor are the boxes of its faces and edges, which the first call makes.
+void make_boxes(const SceneStep& scene, double& seconds)
+{
+    const MovingMesh mesh = moving_mesh(scene);
+    const IndexedSource faces = indexed(mesh, std::span<const VertexFace>{}).source.indexed;
+    const IndexedSource edges = indexed(mesh, std::span<const EdgeEdge>{}).source.indexed;
+    const auto begin = std::chrono::steady_clock::now();
+    for (const auto& [kind, source] : {std::pair{PairKind::vertex_face, faces}, std::pair{PairKind::edge_edge, edges}})
+        benchmark::DoNotOptimize(mesh.boxes()->screen(kind, source, std::numeric_limits<std::size_t>::max(), 0.0).first);
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void run_mesh(benchmark::State& state, const std::string& data, void (*make)(const SceneStep&, double&))
 {
     const SceneStep& scene = dataset(data, PairKind::vertex_face).scene.value();
     for ([[maybe_unused]] auto _ : state) {
-        const auto begin = std::chrono::steady_clock::now();
-        const MovingMesh mesh = moving_mesh(scene);
-        benchmark::DoNotOptimize(mesh.records());
-        state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-        if (!mesh.status().ok()) return fail(state, message(mesh.status().error));
+        double seconds = 0.0;
+        make(scene, seconds);
+        state.SetIterationTime(seconds);
     }
-    state.counters["vertices"] = static_cast<double>(scene.start.size() / 3);
-    state.counters["vertices/s"] = benchmark::Counter(static_cast<double>(scene.start.size() / 3),
-                                                      benchmark::Counter::kIsIterationInvariantRate);
+    const auto vertices = static_cast<double>(scene.start.size() / 3);
+    state.counters["vertices"] = vertices;
+    state.counters["vertices/s"] = benchmark::Counter(vertices, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void register_benchmarks(bool filtered)
@@ -217,10 +238,11 @@ void register_benchmarks(bool filtered)
                 ->Unit(benchmark::kMillisecond);
     for (const std::string& data : available_datasets())
         if (is_scene(data))
-            benchmark::RegisterBenchmark(("moving_mesh/" + data).c_str(),
-                                         [data](benchmark::State& state) { run_moving_mesh(state, data); })
-                ->UseManualTime()
-                ->Unit(benchmark::kMillisecond);
+            for (const bool boxes : {false, true})
+                benchmark::RegisterBenchmark(((boxes ? "mesh_boxes/" : "moving_mesh/") + data).c_str(),
+                                             [=](benchmark::State& state) { run_mesh(state, data, boxes ? make_boxes : make_mesh); })
+                    ->UseManualTime()
+                    ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

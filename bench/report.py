@@ -122,9 +122,11 @@ def peer_table(rows):
 
 
 def mesh_table(rows):
-    out = [[name.split("/")[1], number(row["vertices"], digits=1), number(row["vertices/s"], 1e-6), percent(row.get("spread"))]
-           for name, row in rows.items() if name.startswith("moving_mesh/")]
-    return ["data", "vertices", "M vertices/s", "spread"], out
+    out = [[what.replace("_", " "), name, number(row["vertices"], digits=1), number(1e3 * row["vertices"] / row["vertices/s"]),
+            percent(row.get("spread"))]
+           for full_name, row in rows.items()
+           for what, _, name in [full_name.partition("/")] if what in ("moving_mesh", "mesh_boxes")]
+    return ["what is made", "data", "vertices", "ms", "spread"], out
 
 
 def tables(record):

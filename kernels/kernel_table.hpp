@@ -63,6 +63,8 @@ static_assert(group_pairs + LaneQueue<1>::most_added + 8 <= LaneQueue<1>::capaci
 
 /// Blocks of indexed pairs whose vertices are asked for before they are read.
 inline constexpr std::size_t indexed_ahead = 2;
+/// Pairs whose boxes are asked for before they are read.
+inline constexpr std::size_t boxes_ahead = 32;
 
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {
@@ -83,6 +85,9 @@ struct TileScratch {
     AdvancingQueue advancing;    ///< Pairs that the first look does not.
     /// The blocks of a group in the native layout, where the input is not.
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
+    /// Indexed pairs that their boxes do not keep apart, by their number in the tile; the last one again for the blocks after.
+    std::uint16_t listed[tile_pairs + (indexed_ahead + 1) * block_pairs];
+    alignas(64) double numbers[group_pairs];                   ///< Those of the blocks of a group, as lanes know them.
     const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
     const double* prefetched;  ///< How far packed input has been asked for.
 };

@@ -11,6 +11,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+
+#include <grid_box.hpp>
 
 #ifndef FASTCCD_KERNEL_NAMESPACE
 #define FASTCCD_KERNEL_NAMESPACE portable
@@ -72,6 +75,28 @@ struct Lane<double> {
             start[axis * stride] = records[0][axis];
             end[axis * stride] = records[0][3 + axis];
         }
+    }
+
+    /// What the box of the pair's first primitive compares with: highest x y z, 0, minus the lowest x y z, 0, all moved
+    /// outwards by `separation`, at both ends.
+    struct FirstBox {
+        std::int32_t start[8], end[8];
+    };
+    static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation)
+    {
+        FirstBox first;
+        for (int k = 0; k < 8; ++k) {
+            first.start[k] = separation[k] - box.start[k ^ 4];
+            first.end[k] = separation[k] - box.end[k ^ 4];
+        }
+        return first;
+    }
+    /// Whether the boxes are apart along an axis, in the same order at both ends (grid_box.hpp).
+    static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second)
+    {
+        bool any = false;
+        for (int k = 0; k < 8; ++k) any |= (first.start[k] < second.start[k]) & (first.end[k] < second.end[k]);
+        return any;
     }
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include <fastccd/pair_view.hpp>
+#include <grid_box.hpp>
 
 namespace fastccd {
 
@@ -14,6 +15,8 @@ struct IndexedSource {
     const std::int32_t* pairs;       ///< 2 a pair: vertex and face, or two edges.
     const std::int32_t* primitives;  ///< Vertices of the faces or edges.
     std::ptrdiff_t row_stride, column_stride;
+    std::size_t vertex_count, primitive_count;
+    BoxScreen boxes;
 };
 
 struct PairSource {

@@ -7,6 +7,7 @@
 
 #include <fastccd/indexed.hpp>
 #include <index_check.hpp>
+#include <mesh_boxes.hpp>
 #include <tile_runner.hpp>
 
 namespace fastccd {
@@ -15,16 +16,18 @@ namespace fastccd {
 struct CheckedSource {
     PairSource source;
     Status status;
+    MeshBoxes* boxes = nullptr;  ///< Of the mesh that indexed pairs refer to.
 };
 
-inline CheckedSource packed(const PairView& pairs) { return {{&pairs, {}, pairs.size()}, {}}; }
+inline CheckedSource packed(const PairView& pairs) { return {{&pairs, {}, pairs.size()}, {}, nullptr}; }
 
 inline CheckedSource indexed(const MovingMesh& mesh, const std::int32_t* pairs, std::size_t count, const IndexView& primitives,
                              std::size_t first_size)
 {
-    if (!mesh.status().ok()) return {{}, mesh.status()};
-    return {{nullptr, {mesh.records(), pairs, primitives.data, primitives.row_stride, primitives.column_stride}, count},
-            check_pairs(pairs, count, first_size, primitives.size)};
+    if (!mesh.status().ok()) return {{}, mesh.status(), nullptr};
+    return {{nullptr, {mesh.records(), pairs, primitives.data, primitives.row_stride, primitives.column_stride,
+                       mesh.vertex_count(), primitives.size, {}}, count},
+            check_pairs(pairs, count, first_size, primitives.size), mesh.boxes()};
 }
 
 // The pair types are two int32 each, read as such.
@@ -43,7 +46,11 @@ inline CheckedSource indexed(const MovingMesh& mesh, std::span<const EdgeEdge> p
 inline Status prepare(PairKind kind, const CheckedSource& checked, const Options& options, bool count_roots, Job& job)
 {
     if (!checked.status.ok()) return checked.status;
-    return prepare(kind, checked.source, options, count_roots, job);
+    const Status status = prepare(kind, checked.source, options, count_roots, job);
+    if (status.ok() && job.kernels != nullptr && checked.boxes != nullptr)
+        job.source.indexed.boxes =
+            checked.boxes->screen(kind, checked.source.indexed, checked.source.size, options.minimum_separation);
+    return status;
 }
 
 /// To be prepared.

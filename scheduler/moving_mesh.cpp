@@ -6,6 +6,7 @@
 
 #include <guarded.hpp>
 #include <index_check.hpp>
+#include <mesh_boxes.hpp>
 
 namespace fastccd {
 
@@ -44,6 +45,8 @@ void copy_positions(const PositionView& start, const PositionView& end, double* 
 
 }  // namespace
 
+void ReleaseBoxes::operator()(MeshBoxes* boxes) const noexcept { delete boxes; }
+
 MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges) noexcept
     : vertex_count_{start.size()}, faces_{faces}, edges_{edges}
 {
@@ -53,7 +56,8 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     if (!status_.ok() || vertex_count_ == 0) return;
 
     records_ = allocate_aligned(vertex_count_ * record_doubles);
-    status_ = records_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
+    boxes_.reset(new (std::nothrow) MeshBoxes);
+    status_ = records_ == nullptr || boxes_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
         copy_positions(start, end, records_.get());
         return Status{};
     });

@@ -68,15 +68,16 @@ FASTCCD_INLINE bool rows_are_contiguous(const IndexedSource& source)
 
 inline constexpr std::size_t vertex_record_size = 8;
 
-/// Finds the vertex records of the 8 pairs at `pairs`, and asks for them.
+/// Finds the vertex records of 8 of the pairs at `pairs`, and asks for them.
 template <PairKind kind, bool contiguous>
-FASTCCD_INLINE void resolve_pairs(const IndexedSource& source, const std::int32_t* pairs, const double* (&records)[4][block_pairs])
+FASTCCD_INLINE void resolve_pairs(const IndexedSource& source, const std::int32_t* pairs, const std::uint16_t* listed,
+                                  const double* (&records)[4][block_pairs])
 {
     // A copy, because the compiler cannot know that nothing stored below changes the original.
     const IndexedSource local = source;
     for (std::size_t lane = 0; lane < block_pairs; ++lane) {
         std::size_t vertex[4];
-        pair_vertices<kind, contiguous>(local, pairs + 2 * lane, vertex);
+        pair_vertices<kind, contiguous>(local, pairs + 2 * std::size_t{listed[lane]}, vertex);
         for (int point = 0; point < 4; ++point) {
             const double* const record = local.records + vertex[point] * vertex_record_size;
             __builtin_prefetch(record);
@@ -85,23 +86,34 @@ FASTCCD_INLINE void resolve_pairs(const IndexedSource& source, const std::int32_
     }
 }
 
-/// The same for the block that starts at pair `first`; the last pair stands for those past the end.
-template <PairKind kind>
-FASTCCD_INLINE void resolve_block(const PairSource& pairs, std::size_t first, const double* (&records)[4][block_pairs])
+/// Lists the pairs of the tile that their boxes do not keep apart: all, if there are no boxes. Returns how many.
+template <class Batch>
+FASTCCD_INLINE std::size_t list_pairs(const TileRequest& tile, std::uint16_t* listed)
 {
-    const std::int32_t* ids = pairs.indexed.pairs + 2 * first;
-    std::int32_t padded[2 * block_pairs];
-    if (pairs.size < first + block_pairs) {
-        for (std::size_t lane = 0; lane < block_pairs; ++lane) {
-            const std::size_t pair = first + lane < pairs.size ? first + lane : pairs.size - 1;
-            for (std::size_t k = 0; k < 2; ++k) padded[2 * lane + k] = pairs.indexed.pairs[2 * pair + k];
+    const BoxScreen boxes = tile.source->indexed.boxes;
+    const std::int32_t* const pairs = tile.source->indexed.pairs + 2 * tile.first;
+    const std::size_t count = tile.count;
+    std::size_t size = 0;
+    if (boxes.first == nullptr) {
+        for (; size < count; ++size) listed[size] = static_cast<std::uint16_t>(size);
+    } else {
+        const auto list = [&](std::size_t i) FASTCCD_INLINE_LAMBDA {
+            const auto first = Lane<Batch>::first_box(boxes.first[pairs[2 * i]], boxes.separation);
+            // Without a branch, which could not be foreseen.
+            listed[size] = static_cast<std::uint16_t>(i);
+            size += Lane<Batch>::apart(first, boxes.second[pairs[2 * i + 1]]) ? 0 : 1;
+        };
+        std::size_t i = 0;
+#pragma GCC unroll 4
+        for (; i + boxes_ahead < count; ++i) {
+            __builtin_prefetch(&boxes.second[pairs[2 * (i + boxes_ahead) + 1]]);
+            list(i);
         }
-        ids = padded;
+        for (; i < count; ++i) list(i);
     }
-    if (rows_are_contiguous<kind>(pairs.indexed))
-        resolve_pairs<kind, true>(pairs.indexed, ids, records);
-    else
-        resolve_pairs<kind, false>(pairs.indexed, ids, records);
+    if (size > 0)
+        for (std::size_t k = 0; k < (indexed_ahead + 1) * block_pairs; ++k) listed[size + k] = listed[size - 1];
+    return size;
 }
 
 /// Whole vertex records, transposed in registers.
@@ -169,47 +181,97 @@ private:
     const double* end_ = nullptr;
 };
 
-/// Block that starts at pair `first` (a multiple of 8) and has `count` <= 8 pairs. Zero-copy for blocked
-/// double; otherwise one of scratch.blocks is filled and returned.
+/// What the stages read of a tile: its pairs in blocks of the native layout; of indexed pairs those alone that their boxes do
+/// not keep apart.
 template <PairKind kind, class Batch>
-FASTCCD_INLINE const double* native_block(const TileRequest& tile, std::size_t i, std::size_t count, TileScratch& scratch)
-{
-    const PairSource& source = *tile.source;
-    const std::size_t first = tile.first + i;
-    double* const block = scratch.blocks[i / block_pairs % (group_pairs / block_pairs)];
-    if (source.view == nullptr) {
-        const auto records_of = [&](std::size_t j) FASTCCD_INLINE_LAMBDA -> auto& {
-            return scratch.records[j / block_pairs % (indexed_ahead + 1)];
-        };
-        if (i == 0)
-            for (std::size_t j = 0; j < indexed_ahead * block_pairs; j += block_pairs)
-                resolve_block<kind>(source, first + j, records_of(j));
-        resolve_block<kind>(source, first + indexed_ahead * block_pairs, records_of(i + indexed_ahead * block_pairs));
-        transpose_block<Batch>(records_of(i), block);
+class BlockSource {
+public:
+    FASTCCD_INLINE BlockSource(const TileRequest& tile, TileScratch& scratch)
+        : tile_{tile}, scratch_{scratch}, indexed_{tile.source->view == nullptr},
+          size_{indexed_ ? list_pairs<Batch>(tile, scratch.listed) : tile.count},
+          prefetcher{*tile.source, tile.first, scratch.prefetched}
+    {
+        if (!indexed_ || size_ == 0) return;
+        for (std::size_t i = 0; i < indexed_ahead * block_pairs; i += block_pairs) resolve(i);
+    }
+
+    [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
+
+    /// Number in the tile of pair `i` of this source, and of the pairs from `i` on, in the block read last.
+    [[nodiscard]] FASTCCD_INLINE std::size_t number(std::size_t i) const { return indexed_ ? scratch_.listed[i] : i; }
+    [[nodiscard]] FASTCCD_INLINE Batch numbers(std::size_t i) const
+    {
+        return indexed_ ? Lane<Batch>::load(&scratch_.numbers[i % group_pairs])
+                        : broadcast<Batch>(static_cast<double>(i)) + Lane<Batch>::lane_number();
+    }
+
+    /// The block that starts at pair `i`, a multiple of 8; the last pair stands for those past the end. Zero-copy for blocked
+    /// double; otherwise one of scratch.blocks is filled and returned. Blocks are to be read in order.
+    FASTCCD_INLINE const double* block(std::size_t i)
+    {
+        const double* const found = indexed_ ? transposed(i) : native(i);
+        prefetcher.at_block(found);
+        return found;
+    }
+
+private:
+    FASTCCD_INLINE double* filled(std::size_t i) { return scratch_.blocks[i / block_pairs % (group_pairs / block_pairs)]; }
+    FASTCCD_INLINE auto& records(std::size_t i) { return scratch_.records[i / block_pairs % (indexed_ahead + 1)]; }
+
+    FASTCCD_INLINE void resolve(std::size_t i)
+    {
+        const IndexedSource& source = tile_.source->indexed;
+        const std::int32_t* const pairs = source.pairs + 2 * tile_.first;
+        if (rows_are_contiguous<kind>(source))
+            resolve_pairs<kind, true>(source, pairs, scratch_.listed + i, records(i));
+        else
+            resolve_pairs<kind, false>(source, pairs, scratch_.listed + i, records(i));
+    }
+
+    FASTCCD_INLINE const double* transposed(std::size_t i)
+    {
+        resolve(i + indexed_ahead * block_pairs);
+        transpose_block<Batch>(records(i), filled(i));
+        for (std::size_t lane = 0; lane < block_pairs; ++lane)
+            scratch_.numbers[i % group_pairs + lane] = static_cast<double>(scratch_.listed[i + lane]);
+        return filled(i);
+    }
+
+    FASTCCD_INLINE const double* native(std::size_t i)
+    {
+        const PairView& pairs = *tile_.source->view;
+        const std::size_t first = tile_.first + i, offset = first * pair_coordinates;
+        const std::size_t count = size_ - i < block_pairs ? size_ - i : block_pairs;
+        const bool wide = pairs.scalar() == PairView::Scalar::float64;
+        double* const block = filled(i);
+        switch (pairs.layout()) {
+            case PairView::Layout::blocked:
+                if (wide) return static_cast<const double*>(pairs.data()) + offset;
+                widen_block(static_cast<const float*>(pairs.data()) + offset, block);
+                break;
+            case PairView::Layout::interleaved:
+                if (wide)
+                    pack_interleaved(static_cast<const double*>(pairs.data()) + offset, count, block);
+                else
+                    pack_interleaved(static_cast<const float*>(pairs.data()) + offset, count, block);
+                break;
+            case PairView::Layout::strided:
+                if (wide)
+                    pack_strided<double>(pairs, first, count, block);
+                else
+                    pack_strided<float>(pairs, first, count, block);
+                break;
+        }
         return block;
     }
-    const PairView& pairs = *source.view;
-    const bool wide = pairs.scalar() == PairView::Scalar::float64;
-    const std::size_t offset = first * pair_coordinates;
-    switch (pairs.layout()) {
-        case PairView::Layout::blocked:
-            if (wide) return static_cast<const double*>(pairs.data()) + offset;
-            widen_block(static_cast<const float*>(pairs.data()) + offset, block);
-            break;
-        case PairView::Layout::interleaved:
-            if (wide)
-                pack_interleaved(static_cast<const double*>(pairs.data()) + offset, count, block);
-            else
-                pack_interleaved(static_cast<const float*>(pairs.data()) + offset, count, block);
-            break;
-        case PairView::Layout::strided:
-            if (wide)
-                pack_strided<double>(pairs, first, count, block);
-            else
-                pack_strided<float>(pairs, first, count, block);
-            break;
-    }
-    return block;
-}
+
+    const TileRequest& tile_;
+    TileScratch& scratch_;
+    const bool indexed_;
+    const std::size_t size_;
+
+public:
+    Prefetcher prefetcher;
+};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

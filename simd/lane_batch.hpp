@@ -40,6 +40,23 @@ struct BatchTraits<xsimd::sse2> {
     {
         transpose_two_records(records, start, end, stride);
     }
+    struct FirstBox {
+        __m128i start, end;
+    };
+    static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation)
+    {
+        const __m128i k = load_eight(separation);
+        return {_mm_subs_epi16(k, _mm_shuffle_epi32(load_eight(box.start), 0x4e)),
+                _mm_subs_epi16(k, _mm_shuffle_epi32(load_eight(box.end), 0x4e))};
+    }
+    static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second)
+    {
+        return _mm_movemask_epi8(_mm_and_si128(_mm_cmplt_epi16(first.start, load_eight(second.start)),
+                                               _mm_cmplt_epi16(first.end, load_eight(second.end)))) != 0;
+    }
+
+private:
+    static FASTCCD_INLINE __m128i load_eight(const std::int16_t* p) { return _mm_load_si128(reinterpret_cast<const __m128i*>(p)); }
 };
 #endif
 
@@ -68,8 +85,26 @@ FASTCCD_INLINE void transpose_four_records(const double* const* records, double*
     _mm256_storeu_pd(end + 2 * stride, _mm256_unpackhi_pd(ac, bd));
 }
 
+/// Boxes of the grid in registers of 256 bits, for AVX2 and AVX-512.
+struct WideBoxes {
+    using FirstBox = __m256i;
+    static FASTCCD_INLINE __m256i first_box(const GridBox& box, const std::int16_t* separation)
+    {
+        const __m256i k = _mm256_broadcastsi128_si256(_mm_load_si128(reinterpret_cast<const __m128i*>(separation)));
+        return _mm256_subs_epi16(k, _mm256_shuffle_epi32(load(box), 0x4e));
+    }
+    static FASTCCD_INLINE bool apart(__m256i first, const GridBox& second)
+    {
+        const auto less = static_cast<unsigned>(_mm256_movemask_epi8(_mm256_cmpgt_epi16(load(second), first)));
+        return (less & less >> 16) != 0;
+    }
+
+private:
+    static FASTCCD_INLINE __m256i load(const GridBox& box) { return _mm256_load_si256(reinterpret_cast<const __m256i*>(&box)); }
+};
+
 template <>
-struct BatchTraits<xsimd::avx2> {
+struct BatchTraits<xsimd::avx2> : WideBoxes {
     static FASTCCD_INLINE unsigned bits(__m256d m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m256d x)
     {
@@ -122,7 +157,7 @@ FASTCCD_INLINE void transpose_eight_records(const double* const* records, double
 }
 
 template <>
-struct BatchTraits<xsimd::avx512bw> {
+struct BatchTraits<xsimd::avx512bw> : WideBoxes {
     static FASTCCD_INLINE unsigned bits(__mmask8 m) { return m; }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m512d x)
     {
@@ -167,6 +202,20 @@ struct BatchTraits<xsimd::neon64> {
         vst1q_f64(end + stride, vzip1q_f64(a2, b2));
         vst1q_f64(end + 2 * stride, vzip2q_f64(a2, b2));
     }
+    struct FirstBox {
+        int16x8_t start, end;
+    };
+    static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation)
+    {
+        const int16x8_t k = vld1q_s16(separation);
+        const int16x8_t start = vld1q_s16(box.start), end = vld1q_s16(box.end);
+        return {vqsubq_s16(k, vextq_s16(start, start, 4)), vqsubq_s16(k, vextq_s16(end, end, 4))};
+    }
+    static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second)
+    {
+        return vmaxvq_u16(vandq_u16(vcltq_s16(first.start, vld1q_s16(second.start)),
+                                    vcltq_s16(first.end, vld1q_s16(second.end)))) != 0;
+    }
 };
 #endif
 
@@ -203,6 +252,10 @@ struct Lane<xsimd::batch<double, A>> {
     {
         Traits::transpose_records(records, start, end, stride);
     }
+
+    using FirstBox = typename Traits::FirstBox;
+    static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return Traits::first_box(box, separation); }
+    static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second) { return Traits::apart(first, second); }
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

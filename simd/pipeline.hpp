@@ -37,19 +37,19 @@ public:
     {
         Pipeline pipeline{request, scratch};
         pipeline.prepare();
-        for (std::size_t i = 0; i < request.count; i += group_pairs) {
-            const std::size_t count = request.count - i < group_pairs ? request.count - i : group_pairs;
+        for (std::size_t i = 0; i < pipeline.source.size(); i += group_pairs) {
+            const std::size_t left = pipeline.source.size() - i, count = left < group_pairs ? left : group_pairs;
             if (scratch.dense) {
-                pipeline.screen_dense_group(request, i, count);
+                pipeline.screen_dense_group(i, count);
             } else {
-                pipeline.screen_group(request, i, count);
+                pipeline.screen_group(i, count);
                 pipeline.compare_screened(false);
             }
         }
         pipeline.compare_screened(true);
         pipeline.find_roots(true);
         pipeline.refine(true);
-        scratch.prefetched = pipeline.prefetcher.prefetched();
+        scratch.prefetched = pipeline.source.prefetcher.prefetched();
     }
 
 private:
@@ -59,11 +59,11 @@ private:
     const CertificateBounds whole, early;
     const double cutoff;
     TileScratch& scratch;
-    Prefetcher prefetcher;
+    BlockSource<kind, L> source;
 
     FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& s)
         : parameters{*request.parameters}, whole{parameters.bounds.certificates()}, early{parameters.bounds.early()},
-          cutoff{request.cutoff}, scratch{s}, prefetcher{*request.source, request.first, s.prefetched}
+          cutoff{request.cutoff}, scratch{s}, source{request, s}
     {
     }
 
@@ -93,15 +93,6 @@ private:
             set_bit(scratch.is_undecided, static_cast<unsigned>(pairs[__builtin_ctz(lanes)]));
     }
 
-    /// The block from pair `i` of the tile on.
-    FASTCCD_INLINE const double* block_of(const TileRequest& request, std::size_t i)
-    {
-        const std::size_t left = request.count - i;
-        const double* const block = native_block<kind, L>(request, i, left < block_pairs ? left : block_pairs, scratch);
-        prefetcher.at_block(block);
-        return block;
-    }
-
     /// What the length and volume certificates say of a batch.
     struct Screening {
         unsigned kept;    ///< Lanes to look into.
@@ -123,12 +114,12 @@ private:
 
     /// For scenes, where most pairs end here: screens a group without looking at any result, which no branch predictor could
     /// foresee, then copies the coordinates of what is left, pair by pair, to [screened].
-    void screen_group(const TileRequest& request, std::size_t first, std::size_t count)
+    void screen_group(std::size_t first, std::size_t count)
     {
         const double* blocks[group_pairs / block_pairs];
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
-            const double* const block = blocks[i / block_pairs] = block_of(request, first + i);
+            const double* const block = blocks[i / block_pairs] = source.block(first + i);
             for (unsigned lane = 0; lane < block_pairs; lane += width) {
                 PairRecord<L> record;
                 const Screening found = screen(block + lane, record);
@@ -138,7 +129,8 @@ private:
         }
         const std::uint64_t in_use = count < group_pairs ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
         kept &= in_use;
-        scratch.is_undecided[first / group_pairs] |= beyond & in_use;
+        for (beyond &= in_use; beyond != 0; beyond &= beyond - 1)
+            set_bit(scratch.is_undecided, static_cast<unsigned>(source.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
         scratch.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
 
         ScreenedQueue& queue = scratch.screened;
@@ -148,20 +140,20 @@ private:
             double* const to = &queue.data[0][queue.size++];
 #pragma GCC unroll 24
             for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * ScreenedQueue::capacity] = from[c * block_pairs];
-            to[pair_coordinates * ScreenedQueue::capacity] = static_cast<double>(first + i);
+            to[pair_coordinates * ScreenedQueue::capacity] = static_cast<double>(source.number(first + i));
         }
     }
 
     /// Where most pairs go on: straight to the area certificate, without a queue.
-    void screen_dense_group(const TileRequest& request, std::size_t first, std::size_t count)
+    void screen_dense_group(std::size_t first, std::size_t count)
     {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
-            const double* const block = block_of(request, first + i);
+            const double* const block = source.block(first + i);
             for (unsigned lane = 0; lane < block_pairs && i + lane < count; lane += width) {
                 PairRecord<L> record;
                 const Screening found = screen(block + lane, record);
-                record.pair = broadcast<L>(static_cast<double>(first + i + lane)) + Lane<L>::lane_number();
+                record.pair = source.numbers(first + i + lane);
                 const unsigned in_use = all_lanes(count - i - lane);
                 if ((in_use & found.beyond) != 0) leave_undecided(record.pair, in_use & found.beyond);
                 kept += static_cast<unsigned>(__builtin_popcount(in_use & found.kept));
@@ -259,7 +251,7 @@ private:
 
     FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
     {
-        prefetcher.lines(width);
+        source.prefetcher.lines(width);
         RootSearch& search = scratch.search;
         PairRecord<L> record;
         read(scratch.candidates, i, record);
@@ -305,7 +297,7 @@ private:
 
     FASTCCD_INLINE void approach_root(unsigned i)
     {
-        prefetcher.lines((width + 1) / 2);
+        source.prefetcher.lines((width + 1) / 2);
         RootSearch& search = scratch.search;
         const Bracket<L> piece{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
         Lane<L>::store(&search.guess[i], clipped_step(load_cubic<L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
@@ -314,7 +306,7 @@ private:
     /// Dismisses lanes without inclusion anywhere near the root.
     FASTCCD_INLINE void reject_coarsely(unsigned i, unsigned lanes)
     {
-        prefetcher.lines(width);
+        source.prefetcher.lines(width);
         PairRecord<L> root;
         read(scratch.candidates, i, root);
         root.f = load_cubic<L>(scratch.search.f, i);

@@ -41,18 +41,17 @@ public:
     {
         SeparationPipeline pipeline{request, scratch};
         pipeline.prepare();
-        for (std::size_t i = 0; i < request.count; i += block_pairs) {
-            const std::size_t count = request.count - i < block_pairs ? request.count - i : block_pairs;
-            const double* block = native_block<kind, L>(request, i, count, scratch);
-            pipeline.prefetcher.at_block(block);
-            for (unsigned lane = 0; lane < count; lane += width) {
-                pipeline.screen(block + lane, static_cast<double>(i + lane), lanes_in_use(request.count - i - lane));
+        const std::size_t size = pipeline.source.size();
+        for (std::size_t i = 0; i < size; i += block_pairs) {
+            const double* const block = pipeline.source.block(i);
+            for (unsigned lane = 0; lane < block_pairs && i + lane < size; lane += width) {
+                pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use(size - i - lane));
                 if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
             }
         }
         pipeline.look_first(1);
         pipeline.advance(1);
-        scratch.prefetched = pipeline.prefetcher.prefetched();
+        scratch.prefetched = pipeline.source.prefetcher.prefetched();
     }
 
 private:
@@ -62,11 +61,11 @@ private:
     const SeparationBounds bounds;
     const double limit;
     TileScratch& scratch;
-    Prefetcher prefetcher;
+    BlockSource<kind, L> source;
 
     FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& s)
         : parameters{*request.parameters}, bounds{parameters.bounds.rho}, limit{time_limit(request.cutoff)}, scratch{s},
-          prefetcher{*request.source, request.first, s.prefetched}
+          source{request, s}
     {
     }
 
@@ -103,12 +102,12 @@ private:
         for_each_pair(pair, lanes, [&](unsigned i, int) FASTCCD_INLINE_LAMBDA { set_bit(scratch.is_undecided, i); });
     }
 
-    FASTCCD_INLINE void screen(const double* coordinates, double first, unsigned lanes)
+    FASTCCD_INLINE void screen(const double* coordinates, L pair, unsigned lanes)
     {
         SeparationRecord<L> record;
         record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
         const LaneMask<L> farther = farther_along_axis<kind>(record.r, parameters.separation, bounds, record.extents);
-        record.pair = broadcast<L>(first) + Lane<L>::lane_number();
+        record.pair = pair;
         const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
         if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
         const unsigned kept = decidable & ~Lane<L>::bits(farther);
@@ -133,7 +132,7 @@ private:
     {
         SeparationRecord<L> record;
         while (scratch.separating.size >= least) {
-            prefetcher.lines(2 * width);
+            source.prefetcher.lines(2 * width);
             const unsigned lanes = take_last(scratch.separating, record);
             look_first(record, lanes);
         }
@@ -153,7 +152,7 @@ private:
         while (scratch.advancing.size >= least) {
             unsigned lanes = take_last(scratch.advancing, record);
             do {
-                prefetcher.lines(2 * width);
+                source.prefetcher.lines(2 * width);
                 const StepOutcome<L> outcome = step<kind>(record, parameters, limit);
                 const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
                 if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));

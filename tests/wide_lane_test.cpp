@@ -72,6 +72,9 @@ struct Lane<Array8> {
     {
         One::transpose_records(records, start, end, stride);
     }
+    using FirstBox = One::FirstBox;
+    static FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return One::first_box(box, separation); }
+    static bool apart(const FirstBox& first, const GridBox& second) { return One::apart(first, second); }
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

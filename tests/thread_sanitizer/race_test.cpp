@@ -242,6 +242,36 @@ TEST_P(Races, SeveralCallersAtOnce)
     }
 }
 
+TEST_P(Races, CallersWhoMakeTheBoxesOfAMeshAtOnce)
+{
+    // One triangle a vertex, all of them far from all others, but for pairs of a triangle with itself: contact at time 0.
+    constexpr std::int32_t triangles = 500;
+    std::vector<double> positions;
+    std::vector<std::int32_t> faces;
+    for (std::int32_t i = 0; i < triangles; ++i) {
+        for (const double offset : {0.0, 0.25, 0.5}) positions.insert(positions.end(), {2.0 * i + offset, offset * offset, 1.0});
+        faces.insert(faces.end(), {3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    const PositionView view = PositionView::rows(positions.data(), positions.size() / 3);
+    const MovingMesh mesh{view, view, IndexView::rows(faces.data(), triangles, 3), IndexView::rows(faces.data(), triangles, 2)};
+    std::vector<VertexFace> vertex_face;
+    std::vector<EdgeEdge> edge_edge;
+    for (std::int32_t i = 0; i < 8 * triangles; ++i) {
+        vertex_face.push_back({3 * (i % triangles), (i + i / triangles) % triangles});
+        edge_edge.push_back({i % triangles, (i + i / triangles) % triangles});
+    }
+    std::array<std::vector<Contact>, callers> found;
+    ask_at_once([&](std::size_t caller) {
+        require(GetParam() == oracle::Kind::vertex_face
+                    ? find_contacts(mesh, std::span<const VertexFace>{vertex_face}, {}, found[caller])
+                    : find_contacts(mesh, std::span<const EdgeEdge>{edge_edge}, {}, found[caller]));
+    });
+    for (const auto& contacts : found) {
+        ASSERT_EQ(contacts.size(), std::size_t{triangles});
+        EXPECT_EQ(contacts.back().pair, std::size_t{triangles - 1});
+    }
+}
+
 /// From the dense answers: smallest toi, an invalid pair counting as 0, ties to vertex-face, then to the smaller index.
 CollisionFreeStep step_of(const Input& faces, const Input& edges)
 {
