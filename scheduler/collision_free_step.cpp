@@ -19,6 +19,8 @@ constexpr std::size_t no_pair = std::numeric_limits<std::size_t>::max();
 struct StepWorker : TileWorker {
     std::size_t invalid_before = 0;       ///< Invalid pairs up to its previous tile.
     std::size_t first_invalid = no_pair;  ///< Smallest index of those it has seen.
+
+    StepWorker() {}
 };
 
 /// Offers the contacts of the job, and its invalid pairs as contacts at time 0, under their index plus `offset`. Returns

@@ -35,6 +35,8 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
 struct CollectingWorker : TileWorker {
     std::vector<Contact> contacts;
     std::vector<std::size_t> invalid;
+
+    CollectingWorker() {}
 };
 
 /// Where the results of one tile lie in its worker.

@@ -16,6 +16,14 @@ namespace fastccd {
 struct TileWorker {
     TileScratch scratch;
     Summary totals;
+
+    /// Written out, here and in what derives from it: otherwise oneTBB's T() would clear all of the scratch, which takes longer
+    /// than a few hundred pairs. Kernels write before they read, but for these two.
+    TileWorker()
+    {
+        scratch.dense = false;
+        scratch.prefetched = nullptr;
+    }
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);
 

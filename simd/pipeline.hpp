@@ -160,7 +160,8 @@ private:
                 examine(record, in_use & found.kept);
             }
         }
-        scratch.dense = 2 * kept >= count;
+        // Less than what leads here, so that shares around one half do not go to and fro.
+        scratch.dense = 3 * kept >= count;
     }
 
     /// Certificates that need more than screening has computed.
