@@ -38,9 +38,12 @@ const Style styles[] = {
     {"integers, touching", [](Random& random, const double (&at)[3], int axis, int) {
          return std::round(4 * at[axis]) + std::round(uniform(random, -1, 1));
      }},
-    {"on and beside the lines of the grid", [](Random& random, const double (&at)[3], int axis, int) {
-         const double line = std::round(spread(random, at, axis, 0) * 40) / 40;
-         return std::nextafter(line, std::round(uniform(random, -2, 2)));
+    {"on and beside the lines of the grid", [](Random&, const double (&at)[3], int axis, int) {
+         // Primitives that are points, the outermost at -1.25 and 1.25: lines are at multiples of a cell.
+         if (axis != 0) return 0.0;
+         if (std::abs(at[0]) > 0.9) return std::copysign(1.25, at[0]);
+         constexpr double beside[] = {0.0, 1e-9, 0.3, 0.5, 0.999, -1e-9};
+         return (std::round(2 * at[1]) + beside[static_cast<std::size_t>(std::abs(at[2]) * 5.99)]) * (1.25 / grid_cells);
      }},
     {"far from the origin", [](Random& random, const double (&at)[3], int axis, int end) {
          return 1e6 + 1e-7 * spread(random, at, axis, end);
@@ -256,7 +259,7 @@ TEST(Boxes, ApartOnlyWithAGapAtBothEnds)
 {
     for (const auto kind : kinds)
         for (const Style& style : styles)
-            for (const double distance : {0.0, 1e-12, 0.01, 0.2, 1e10}) {
+            for (const double distance : {0.0, 1e-12, 7.8e-5, 1.17e-4, 0.01, 0.2, 1e10}) {
                 SCOPED_TRACE(style.name);
                 std::size_t apart = 0;
                 expect_apart_only_with_a_gap(Soup{kind, style.coordinate, 11}, distance, apart);

@@ -71,19 +71,6 @@ mutant() {
     survivors=$((survivors + 1))
     printf '%-44s SURVIVES %s\n' "$name" "$*"
   fi
-
-# ---- Minimum separation
-separation=kernels/separation_bound.hpp
-mutant 'separation: height = 0' $separation 's/vertex_face \? rho \+ 3 : 2 \* rho \+ 8\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test separation_test
-mutant 'separation: height between = 0' $separation 's/vertex_face \? rho \+ 7 : 2 \* rho \+ 16\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test separation_test
-mutant 'separation: axis = 0' $separation 's/\(2 \* rho \+ 2 \+ slack\) \* u/0.0/' error_bounds_test separation_test
-mutant 'separation: distance = 0' $separation 's/\(4 \* rho \+ 33 \+ slack\) \* u/0.0/' error_bounds_test separation_test
-mutant 'separation: unit vectors taken as such' $separation 's/threshold\{d \* \(1\.0 \+ 0x1p-49\)\}/threshold{d * (1.0 - 0x1p-49)}/' error_bounds_test separation_test
-steps=kernels/separation_certificate.hpp
-mutant 'separation: axis at one end' $steps 's/less\(threshold, min\(s\.above, e\.above\)\)/less(threshold, max(s.above, e.above))/' separation_test separation_bits_test
-mutant 'separation: axis without d' $steps 's/\(broadcast<L>\(parameters\.threshold\) \+ broadcast/(broadcast<L>(0.0) + broadcast/' separation_test
-mutant 'separation: turning, middle not asked' $steps 's/ & less\(from \+ to, c\.middle_n \+ c\.middle_m\)//' error_bounds_test separation_test
-mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & less\(sight\.reach\.low, time\) & less\(time, high\)/here/' separation_test separation_bits_test
 }
 
 all_mutants() {
@@ -99,7 +86,7 @@ mutant 'underflow_share = 0' scalar/magnitudes.hpp 's/underflow_share = 0x1p-40/
 mutant 'volume_floor = 0' $bounds 's/volume_floor = 0x1p-800/volume_floor = 0/' error_bounds_test
 mutant 'area_floor = 0' $bounds 's/area_floor = 0x1p-900/area_floor = 0/' error_bounds_test
 mutant 'smallest_volume = 0' $bounds 's/smallest_volume = 0x1p-300/smallest_volume = 0/' same_bits_test certificates_test truth_test stress
-mutant 'largest_extent without limit' $bounds 's/largest_extent = 0x1p130/largest_extent = 0x1p340/' certificates_test same_bits_test truth_test stress
+mutant 'lanes without largest extent' $bounds 's/t_max == 1\.0 \? largest_extent : 0\.25 \* largest_extent \* t_max/1e308/' certificates_test same_bits_test truth_test stress
 mutant 'rho of shorter steps = 1' $bounds 's/t_max == 1\.0 \? 1\.0 : 10\.0/1.0/' error_bounds_test
 mutant 'hull_deviation = 0' $bounds 's/hull_deviation = 4\.0/hull_deviation = 0/' error_bounds_test
 
@@ -160,6 +147,31 @@ mutant 'lanes: crossing not asked for' $pipeline 's/crossing & Lane<L>::bits\(in
 mutant 'lanes: crossing by sign alone' $pipeline 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, min\(pk, qk, tk\)\) \| less\(max\(pk, qk, tk\), zero - bound\)/less(zero, min(pk, qk, tk)) | less(max(pk, qk, tk), zero)/' certificates_test same_bits_test
 mutant 'lanes: early cutoff too early' $pipeline 's/cutoff \+ 2 \* parameters\.leaf_width < 1\.0 \? cutoff \+ 2 \* parameters\.leaf_width : 1\.0/0.5 * cutoff/' indexed_test same_bits_test
+
+# ---- Minimum separation
+separation=kernels/separation_bound.hpp
+mutant 'separation: height = 0' $separation 's/vertex_face \? rho \+ 3 : 2 \* rho \+ 8\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test separation_test
+mutant 'separation: height between = 0' $separation 's/vertex_face \? rho \+ 7 : 2 \* rho \+ 16\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test separation_test
+mutant 'separation: axis = 0' $separation 's/\(2 \* rho \+ 2 \+ slack\) \* u/0.0/' error_bounds_test separation_test
+mutant 'separation: distance = 0' $separation 's/\(4 \* rho \+ 33 \+ slack\) \* u/0.0/' error_bounds_test separation_test
+mutant 'separation: unit vectors taken as such' $separation 's/threshold\{d \* \(1\.0 \+ 0x1p-49\)\}/threshold{d * (1.0 - 0x1p-49)}/' error_bounds_test separation_test
+steps=kernels/separation_certificate.hpp
+mutant 'separation: axis at one end' $steps 's/less\(threshold, min\(s\.above, e\.above\)\)/less(threshold, max(s.above, e.above))/' separation_test separation_bits_test
+mutant 'separation: axis without d' $steps 's/\(broadcast<L>\(parameters\.threshold\) \+ broadcast/(broadcast<L>(0.0) + broadcast/' separation_test
+mutant 'separation: turning, middle not asked' $steps 's/ & less\(from \+ to, c\.middle_n \+ c\.middle_m\)//' error_bounds_test separation_test
+mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & less\(sight\.reach\.low, time\) & less\(time, high\)/here/' separation_test separation_bits_test
+
+# ---- Boxes of indexed pairs
+boxes=scheduler/mesh_boxes.cpp
+mutant 'boxes: highest is the lower line' $boxes 's/-1 - (start|end)/-$1/g' boxes_test
+mutant 'boxes: separation rounded down' $boxes 's/std::ceil\(/std::floor(/' boxes_test
+mutant 'boxes: short axes count' kernels/grid_box.hpp 's/shortest_axis = 0x1p-20/shortest_axis = 0/' boxes_test
+mutant 'boxes: large separations wrap' $boxes 's/cells < beyond_grid \? static_cast<std::int16_t>\(cells\) : beyond_grid/static_cast<std::int16_t>(static_cast<std::int64_t>(std::min(cells, 1e15)))/' boxes_test
+mutant 'boxes: of coordinates that are not finite' $boxes 's/if \(bounds\.not_finite != 0\.0\) return set\.release\(\);//' boxes_test
+mutant 'boxes: third corner left out' $boxes 's/faces \? join\(two, corner\(2\)\) : two/two/' boxes_test
+mutant 'boxes: apart at one end' kernels/lane.hpp 's/(first\.start\[k\] < second\.start\[k\]\)) &/$1 |/' boxes_test
+mutant 'boxes: touching is apart' kernels/lane.hpp 's/first\.(start|end)\[k\] < second/first.$1\[k] <= second/g' boxes_test
+mutant 'boxes: wrong pair listed' simd/block_source.hpp 's/listed\[size\] = static_cast<std::uint16_t>\(i\);\s*size \+=/listed[size] = static_cast<std::uint16_t>(i ^ 1);\n            size +=/' boxes_test
 }
 
 all_mutants  # that each of them still changes something

@@ -1,7 +1,12 @@
-// Any bytes as pairs, both kinds: a byte chooses tolerance and t_max, then 24 doubles a pair. Every instruction set gives the
-// bits of the certified search; a time is in [0, t_max] or infinite, and NaN exactly where a coordinate is not finite.
+// Any bytes as pairs, both kinds: a byte chooses tolerance and t_max, then come 24 doubles a pair; a double after the last pair
+// is a minimum separation, any other rest asks for the exact verdict. Every instruction set gives the bits of the certified
+// search, for packed pairs and for all pairs of a mesh made of their points; a time is in [0, t_max] or infinite, and NaN exactly
+// where a coordinate is not finite; the exact verdict takes contacts away and makes no time earlier.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
+#include <type_traits>
 #include <vector>
 
 #include <fastccd/fastccd.hpp>
@@ -45,6 +50,58 @@ void check(PairKind kind, const std::vector<double>& coordinates, Options option
     }
 }
 
+/// Of two of the pairs: every vertex with every face (x1 x2 x3 of a pair), or every edge (x0 x1, x2 x3) with every edge.
+template <class Pair>
+void check_mesh(const std::vector<double>& coordinates, const Options& options)
+{
+    constexpr bool faces = std::is_same_v<Pair, VertexFace>;
+    const auto count = static_cast<std::int32_t>(std::min<std::size_t>(coordinates.size() / pair_coordinates, 2));
+    std::vector<double> start, end;
+    std::vector<std::int32_t> rows;
+    for (std::int32_t i = 0; i < count; ++i) {
+        const double* const pair = &coordinates[static_cast<std::size_t>(i) * pair_coordinates];
+        start.insert(start.end(), pair, pair + 12);
+        end.insert(end.end(), pair + 12, pair + 24);
+        for (std::int32_t corner = faces ? 1 : 0; corner < 4; ++corner) rows.push_back(4 * i + corner);
+    }
+    const std::int32_t primitives = faces ? count : 2 * count, firsts = faces ? 4 * count : primitives;
+    std::vector<Pair> pairs;
+    std::vector<double> packed;
+    for (std::int32_t first = 0; first < firsts; ++first)
+        for (std::int32_t second = 0; second < primitives; ++second) {
+            pairs.push_back({first, second});
+            const std::size_t corners = faces ? 3 : 2;
+            for (const std::vector<double>* positions : {&start, &end}) {
+                const auto put = [&](std::int32_t vertex) {
+                    const auto at = positions->begin() + 3 * vertex;
+                    packed.insert(packed.end(), at, at + 3);
+                };
+                if (faces) put(first);
+                for (std::size_t k = 0; !faces && k < 2; ++k) put(rows[2 * static_cast<std::size_t>(first) + k]);
+                for (std::size_t k = 0; k < corners; ++k) put(rows[corners * static_cast<std::size_t>(second) + k]);
+            }
+        }
+    Options reference = options;
+    reference.reference = true;
+    const std::vector<double> expected = times(faces ? PairKind::vertex_face : PairKind::edge_edge, packed, reference);
+    const IndexView view = IndexView::rows(rows.data(), static_cast<std::size_t>(primitives), faces ? 3 : 2);
+    const std::size_t vertices = start.size() / 3;
+    const MovingMesh mesh{PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
+                          faces ? view : IndexView{}, faces ? IndexView{} : view};
+    std::vector<double> found(pairs.size());
+    testing::require(time_of_impact(mesh, std::span<const Pair>{pairs}, options, found).ok());
+    testing::require(std::memcmp(found.data(), expected.data(), found.size() * sizeof(double)) == 0);
+}
+
+void check_exact(PairKind kind, const std::vector<double>& coordinates, Options options)
+{
+    const std::vector<double> possible = times(kind, coordinates, options);
+    options.exact = true;
+    const std::vector<double> exact = times(kind, coordinates, options);
+    for (std::size_t i = 0; i < exact.size(); ++i)
+        testing::require(std::isnan(possible[i]) ? std::isnan(exact[i]) : exact[i] >= possible[i]);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
@@ -56,7 +113,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.t_max = data[0] % 3 == 0 ? 1.0 : 1.0 / (1 + data[0]);
     std::vector<double> coordinates((size - 1) / pair_bytes * pair_coordinates);
     std::memcpy(coordinates.data(), data + 1, coordinates.size() * sizeof(double));
+    const std::size_t rest = (size - 1) % pair_bytes;
+    if (rest == sizeof(double)) {
+        std::memcpy(&options.minimum_separation, data + size - rest, rest);
+        options.minimum_separation = std::abs(options.minimum_separation);
+        if (!std::isfinite(options.minimum_separation)) return 0;
+    }
     check(PairKind::vertex_face, coordinates, options);
     check(PairKind::edge_edge, coordinates, options);
+    check_mesh<VertexFace>(coordinates, options);
+    check_mesh<EdgeEdge>(coordinates, options);
+    if (rest != 0 && rest != sizeof(double)) {
+        check_exact(PairKind::vertex_face, coordinates, options);
+        check_exact(PairKind::edge_edge, coordinates, options);
+    }
     return 0;
 }
