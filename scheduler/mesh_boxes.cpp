@@ -189,8 +189,8 @@ BoxScreen MeshBoxes::screen(PairKind kind, const IndexedSource& source, std::siz
     std::atomic<Set*>& kept = sets_[kind == PairKind::vertex_face ? 0 : 1];
     Set* set = kept.load(std::memory_order_acquire);
     if (set == nullptr) {
-        // A pair that its boxes keep apart saves about what a box costs, and most pairs of a broad phase are.
-        if (pairs < source.vertex_count + source.primitive_count) return {};
+        // A box costs as much as one or two pairs save that are kept apart, and four in five are.
+        if (pairs / 2 < source.vertex_count + source.primitive_count) return {};
         set = make(kind, source);
         if (set == nullptr) return {};
         // Another thread may have made them meanwhile: waiting for it, inside a task, could be waiting for oneself.

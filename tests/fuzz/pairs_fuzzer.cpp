@@ -50,12 +50,12 @@ void check(PairKind kind, const std::vector<double>& coordinates, Options option
     }
 }
 
-/// Of two of the pairs: every vertex with every face (x1 x2 x3 of a pair), or every edge (x0 x1, x2 x3) with every edge.
+/// Of three of the pairs, enough for boxes: every vertex with every face (x1 x2 x3 of a pair), or every edge (x0 x1, x2 x3) with every edge.
 template <class Pair>
 void check_mesh(const std::vector<double>& coordinates, const Options& options)
 {
     constexpr bool faces = std::is_same_v<Pair, VertexFace>;
-    const auto count = static_cast<std::int32_t>(std::min<std::size_t>(coordinates.size() / pair_coordinates, 2));
+    const auto count = static_cast<std::int32_t>(std::min<std::size_t>(coordinates.size() / pair_coordinates, 3));
     std::vector<double> start, end;
     std::vector<std::int32_t> rows;
     for (std::int32_t i = 0; i < count; ++i) {
