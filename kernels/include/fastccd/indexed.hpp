@@ -94,9 +94,9 @@ struct ReleaseBoxes {
 };
 
 /// A mesh that moves linearly over the step. Copies the positions once into records of 64 bytes per vertex, which
-/// is what makes indexed pairs fast; refers to the caller's faces and edges, which must outlive it. Calls with many pairs
-/// add, once, 32 bytes for each vertex, face and edge: boxes that keep most pairs of a broad phase apart without a look at
-/// their vertices.
+/// is what makes indexed pairs fast; refers to the caller's faces and edges, which must outlive it unchanged. Calls with many
+/// pairs add, once, 32 bytes for each vertex, face and edge: boxes that keep most pairs of a broad phase apart without a look
+/// at their vertices.
 class MovingMesh {
 public:
     MovingMesh() = default;
