@@ -24,8 +24,10 @@ for consumer in find_package find_package_static; do
   quietly cmake --build "$work/$consumer"
   run "$work/$consumer/two_meshes"
 done
-ldd "$work/find_package/two_meshes" | grep -q "libfastccd.so.*$prefix" || fail "find_package did not link the installed shared library"
-if ldd "$work/find_package_static/two_meshes" | grep -q libfastccd; then fail "find_package with COMPONENTS static linked the shared library"; fi
+# Whole outputs: with pipefail a `grep -q` that leaves early may fail what still writes to it.
+linked=$(ldd "$work/find_package/two_meshes") linked_static=$(ldd "$work/find_package_static/two_meshes")
+[[ $linked == *libfastccd.so*"$prefix"* ]] || fail "find_package did not link the installed shared library: $linked"
+[[ $linked_static != *libfastccd* ]] || fail "find_package with COMPONENTS static linked the shared library"
 
 # Another version, or a component that is not there, is refused.
 mkdir "$work/refused"

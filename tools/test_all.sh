@@ -50,7 +50,7 @@ test_other_machines() {
     say "emulated machines: only from x86-64"
     return 0
   fi
-  dpkg --print-foreign-architectures | grep -qx arm64 || as_root dpkg --add-architecture arm64
+  [[ $(dpkg --print-foreign-architectures) == *arm64* ]] || as_root dpkg --add-architecture arm64
   install_packages qemu-user-static g++-aarch64-linux-gnu libtbb-dev:arm64 libxsimd-dev:arm64 libgmp-dev:arm64 libgtest-dev:arm64
   "$build/tests/fastccd_digest" $pairs >"$here"
 
