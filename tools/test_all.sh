@@ -1,13 +1,15 @@
 # Sourced by test.sh --all: what needs builds of its own, in folders next to the ordinary one.
 
-# AddressSanitizer and UndefinedBehaviorSanitizer on all tests, and some seconds of fuzzing in the same build.
+# AddressSanitizer and UndefinedBehaviorSanitizer on all tests, and some seconds of fuzzing in the same build. Left out:
+# oracle_test and report_test, four minutes each or more of arithmetic in the oracle, none of the library's; report_page_test
+# runs the report itself.
 test_sanitized_and_fuzz() {
   local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized
   install_packages clang libclang-rt-dev
   CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
     -DFASTCCD_FUZZERS=ON -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
   say "testing with sanitizers"
-  ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)"
+  ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)" --exclude-regex '^(oracle_test|report_test)$'
 
   say "fuzzing, $seconds s each"
   fuzz npy "$seconds" npy
