@@ -80,6 +80,10 @@ void* operator new(std::size_t size)
     if (void* p = std::malloc(size != 0 ? size : 1)) return p;
     throw std::bad_alloc{};
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept
+{
+    return allowed(size) ? std::malloc(size != 0 ? size : 1) : nullptr;
+}
 void* operator new(std::size_t size, std::align_val_t alignment)
 {
     if (!allowed(size)) throw std::bad_alloc{};
