@@ -121,12 +121,12 @@ FASTCCD_INLINE L max(L a, L b)
 template <class L>
 FASTCCD_INLINE L min(L a, L b, L c)
 {
-    return min(min(a, b), c);
+    return Lane<L>::min(Lane<L>::min(a, b), c);
 }
 template <class L>
 FASTCCD_INLINE L max(L a, L b, L c)
 {
-    return max(max(a, b), c);
+    return Lane<L>::max(Lane<L>::max(a, b), c);
 }
 template <class L>
 FASTCCD_INLINE L abs(L a)

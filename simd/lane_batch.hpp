@@ -258,4 +258,18 @@ struct Lane<xsimd::batch<double, A>> {
     static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second) { return Traits::apart(first, second); }
 };
 
+// Found by argument, xsimd::min and max would be preferred to the templates of lane.hpp, and on NEON they propagate NaN. These are
+// preferred to both. To be included before the kernels, which look them up where they stand.
+
+template <class A>
+FASTCCD_INLINE xsimd::batch<double, A> min(const xsimd::batch<double, A>& a, const xsimd::batch<double, A>& b)
+{
+    return Lane<xsimd::batch<double, A>>::min(a, b);
+}
+template <class A>
+FASTCCD_INLINE xsimd::batch<double, A> max(const xsimd::batch<double, A>& a, const xsimd::batch<double, A>& b)
+{
+    return Lane<xsimd::batch<double, A>>::max(a, b);
+}
+
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
