@@ -17,8 +17,8 @@ struct TileWorker {
     TileScratch scratch;
     Summary totals;
 
-    /// Written out, here and in what derives from it: otherwise oneTBB's T() would clear all of the scratch, which takes longer
-    /// than a few hundred pairs. Kernels write before they read, but for these two.
+    /// Written out, here and in what derives from it: otherwise oneTBB's T() would clear all of the scratch, which takes as long
+    /// as a hundred pairs. Kernels write before they read, but for these two.
     TileWorker()
     {
         scratch.dense = false;
