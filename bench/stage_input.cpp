@@ -89,10 +89,10 @@ bool has_root(const SearchParameters& parameters, PairRecord<double>& record)
 }  // namespace
 
 StageData::StageData(PairKind kind, const PairBuffer& packed, const SearchParameters& parameters)
-    : kind_{kind}, parameters_{parameters}, blocks_{tile_pairs}, candidates_(stage_queues), roots_(stage_queues)
+    : kind_{kind}, parameters_{parameters}, blocks_{stage_pairs}, candidates_(stage_queues), roots_(stage_queues)
 {
     if (packed.size() == 0) throw std::runtime_error("a data set without pairs has no stages");
-    for (std::size_t k = 0; k < tile_pairs; ++k) {
+    for (std::size_t k = 0; k < stage_pairs; ++k) {
         const Coordinates pair = coordinates(packed, visited(k, packed.size()));
         blocks_.set(k, pair);
         sample_.insert(sample_.end(), pair.begin(), pair.end());

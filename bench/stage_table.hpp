@@ -13,6 +13,9 @@ namespace fastccd::bench {
 /// Queues of one input: 512 entries, 150 to 180 KB, within the L2 cache.
 inline constexpr unsigned stage_queues = 8;
 
+/// Packed pairs: 192 KiB.
+inline constexpr unsigned stage_pairs = 1024;
+
 /// What the stages take. Queues hold PairQueue::drain_at entries each, as they do when the pipeline empties them.
 struct StageInput {
     PairKind kind;

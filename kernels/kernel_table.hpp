@@ -12,9 +12,9 @@
 
 namespace fastccd {
 
-/// Pairs per tile, the unit of scheduling and of results. 1,024 pairs are 192 KiB of packed input, so that a
-/// tile with its scratch stays within half of a 512 KiB L2 cache. A multiple of block_pairs.
-inline constexpr std::size_t tile_pairs = 1024;
+/// Pairs per tile, the unit of results, at most. At the end of a tile the queues run empty, in batches that are not full; so
+/// tiles are large, but their times (32 KiB) with the queues are to stay in the L2 cache. A multiple of group_pairs.
+inline constexpr std::size_t tile_pairs = 4096;
 
 /// A queue of pairs or roots between two stages, structure of arrays: one row per field.
 template <unsigned field_count>
@@ -85,14 +85,14 @@ struct TileScratch {
     AdvancingQueue advancing;    ///< Pairs that the first look does not.
     /// The blocks of a group in the native layout, where the input is not.
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
+    alignas(64) double wide[block_coordinates];  ///< Records of floats, as doubles.
     /// Indexed pairs that their boxes do not keep apart, by their number in the tile; the last one again for the blocks after.
     std::uint16_t listed[tile_pairs + (indexed_ahead + 1) * block_pairs];
     alignas(64) double numbers[group_pairs];                   ///< Those of the blocks of a group, as lanes know them.
     const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
-    const double* prefetched;  ///< How far packed input has been asked for.
 };
 
-/// `count` pairs of the source from `first` on; first is a multiple of tile_pairs, count at most tile_pairs.
+/// `count` pairs of the source from `first` on; first is a multiple of group_pairs, count at most tile_pairs.
 struct TileRequest {
     PairKind kind;
     const PairSource* source;

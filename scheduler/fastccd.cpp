@@ -53,11 +53,12 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
     if (const Status status = prepare(kind, pairs, options, false, job); !status.ok()) return status;
 
     // Each worker appends to its own lists; shares put them back in pair order.
-    std::vector<TileShare> shares((pairs.source.size + tile_pairs - 1) / tile_pairs);
+    const std::size_t most = pairs_per_tile(pairs.source.size);
+    std::vector<TileShare> shares((pairs.source.size + most - 1) / most);
     tbb::combinable<CollectingWorker> workers;
     const Summary totals = for_each_tile(
         job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t) {
-            TileShare& share = shares[first / tile_pairs];
+            TileShare& share = shares[first / most];
             share = {&worker, worker.contacts.size(), 0, worker.invalid.size(), 0};
             for_each_bit(worker.scratch.reported, [&](std::size_t i) {
                 const double t = worker.scratch.time[i];

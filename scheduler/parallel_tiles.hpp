@@ -18,14 +18,20 @@ struct TileWorker {
     Summary totals;
 
     /// Written out, here and in what derives from it: otherwise oneTBB's T() would clear all of the scratch, which takes as long
-    /// as a hundred pairs. Kernels write before they read, but for these two.
+    /// as a hundred pairs. Kernels write before they read, but for this.
     TileWorker()
     {
         scratch.dense = false;
-        scratch.prefetched = nullptr;
     }
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);
+
+/// Of a call with `size` pairs. Few pairs are cut into smaller tiles, so that every thread gets its share of them.
+constexpr std::size_t pairs_per_tile(std::size_t size)
+{
+    constexpr std::size_t least_tiles = 16;
+    return size >= least_tiles * tile_pairs ? tile_pairs : tile_pairs / 4;
+}
 
 /// Runs every tile of the job up to a cutoff, cutoff(first) (see TileRequest; negative: the tile is left out), and
 /// calls consume(worker, first, count) after each, on the worker's thread.
@@ -34,10 +40,10 @@ template <class Worker, class Cutoff, class Consume>
 Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Cutoff cutoff, Consume consume)
 {
     const std::size_t size = job.source.size;
-    const std::size_t tiles = (size + tile_pairs - 1) / tile_pairs;
+    const std::size_t most = pairs_per_tile(size), tiles = (size + most - 1) / most;
     const auto run = [&](std::size_t tile, Worker& worker) {
-        const std::size_t first = tile * tile_pairs;
-        const std::size_t count = std::min(tile_pairs, size - first);
+        const std::size_t first = tile * most;
+        const std::size_t count = std::min(most, size - first);
         const double until = cutoff(first);
         if (until < 0.0) return;
         run_tile(job, first, count, until, worker.scratch, worker.totals);

@@ -26,7 +26,7 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
 /// Answers one pair, of 24 coordinates in the order of PairView, by the scalar search. `cutoff`: see run_tile.
 scalar::SearchResult answer_pair(const Job& job, const double* coordinates, double cutoff);
 
-/// Answers `count` <= tile_pairs pairs from `first` (a multiple of tile_pairs) on, into time, roots and reported of
+/// Answers `count` <= tile_pairs pairs from `first` (a multiple of group_pairs) on, into time, roots and reported of
 /// the scratch; adds to `totals` everything but `pairs`. With cutoff < 1, pairs whose toi is greater than
 /// cutoff t_max may be left out.
 void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch, Summary& totals);

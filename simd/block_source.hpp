@@ -11,24 +11,40 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// Copies up to 8 records into [24][8]; lanes past `count` repeat the last record.
-template <class T>
-FASTCCD_INLINE void pack_interleaved(const T* records, std::size_t count, double* block)
+/// Transposes up to 8 records of 24 doubles into [24][8]; lanes past `count` repeat the last record.
+template <class Batch>
+FASTCCD_INLINE void pack_interleaved(const double* records, std::size_t count, double* block)
 {
-    for (std::size_t lane = 0; lane < block_pairs; ++lane) {
-        const T* record = records + (lane < count ? lane : count - 1) * pair_coordinates;
-        for (std::size_t c = 0; c < pair_coordinates; ++c) block[c * block_pairs + lane] = static_cast<double>(record[c]);
-    }
+    constexpr std::size_t part = 6;  // what Lane::transpose_records takes
+    for (std::size_t lane = 0; lane < block_pairs; lane += Lane<Batch>::transposed_records)
+        for (std::size_t c = 0; c < pair_coordinates; c += part) {
+            const double* parts[Lane<Batch>::transposed_records];
+            for (std::size_t k = 0; k < Lane<Batch>::transposed_records; ++k)
+                parts[k] = records + (lane + k < count ? lane + k : count - 1) * pair_coordinates + c;
+            Lane<Batch>::transpose_records(parts, block + c * block_pairs + lane, block + (c + 3) * block_pairs + lane, block_pairs);
+        }
+}
+
+/// The same for records of 24 floats; `wide` has room for 8 records.
+template <class Batch>
+FASTCCD_INLINE void pack_interleaved(const float* records, std::size_t count, double* wide, double* block)
+{
+    for (std::size_t k = 0; k < count * pair_coordinates; ++k) wide[k] = static_cast<double>(records[k]);
+    pack_interleaved<Batch>(wide, count, block);
 }
 
 template <class T>
 FASTCCD_INLINE void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, double* block)
 {
+    const std::ptrdiff_t stride = pairs.stride();
     for (std::size_t c = 0; c < pair_coordinates; ++c) {
-        const T* data = static_cast<const T*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * pairs.stride();
-        for (std::size_t lane = 0; lane < block_pairs; ++lane)
-            block[c * block_pairs + lane] =
-                static_cast<double>(data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * pairs.stride()]);
+        const T* const data = static_cast<const T*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
+        double* const row = block + c * block_pairs;
+        if (stride == 1 && count == block_pairs)  // all at once
+            for (std::size_t lane = 0; lane < block_pairs; ++lane) row[lane] = static_cast<double>(data[lane]);
+        else
+            for (std::size_t lane = 0; lane < block_pairs; ++lane)
+                row[lane] = static_cast<double>(data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * stride]);
     }
 }
 
@@ -126,59 +142,53 @@ FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pair
                                            block + (12 + 3 * point) * block_pairs + lane, block_pairs);
 }
 
-/// Asks for packed pairs ahead of the one being read. Reading alone would ask in bursts, and a core has few requests under way
-/// at once; so the later stages, which read nothing, ask as well, further ahead. Distances as measured: cloth-ball 8.0 ns a pair with
-/// these, 9.3 asking for the second-level cache alone, 8.5 to 9 with twice the distances.
+/// Asks for packed pairs ahead of the block being read. Only where blocks are read: the later stages asked as well while tiles
+/// were smaller, which is slower now (bench/README.md). The loop is not to be unrolled: lines are to be asked for slowly.
 class Prefetcher {
 public:
-    /// `prefetched` is where the tile before this one has got to.
-    FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first, const double* prefetched)
+    FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first)
     {
-        const bool native = source.view != nullptr && source.view->layout() == PairView::Layout::blocked &&
-                            source.view->scalar() == PairView::Scalar::float64;
-        if (!native) return;
-        const double* const data = static_cast<const double*>(source.view->data());
-        end_ = data + (source.size + block_pairs - 1) / block_pairs * block_coordinates;
-        next_ = data + first * pair_coordinates;
-        limit_ = next_;
-        if (next_ <= prefetched && prefetched <= ahead(most_blocks)) next_ = prefetched;
+        if (source.view == nullptr) return;
+        const PairView& pairs = *source.view;
+        const std::size_t number = pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
+        if (pairs.layout() == PairView::Layout::strided) {
+            strided_ = &pairs;
+            element_ = static_cast<std::ptrdiff_t>(number) * pairs.stride();
+            last_ = static_cast<std::ptrdiff_t>(source.size) - 1;
+            return;
+        }
+        const std::size_t pair = pair_coordinates * number;
+        const auto* const data = static_cast<const std::byte*>(pairs.data());
+        next_ = data + first * pair;
+        end_ = data + source.size * pair;
     }
 
-    /// Before the block at `block` is read.
-    FASTCCD_INLINE void at_block(const double* block)
+    /// Before the block that starts at pair `i` of the source, at `address` unless the layout is strided, is read.
+    FASTCCD_INLINE void at_block(std::size_t i, const void* address)
     {
-        if (end_ == nullptr) return;
-        limit_ = block;
-        const double* const least = ahead(least_blocks);
-        const double* next = next_;
-        for (; next < least; next += line) __builtin_prefetch(next, 0, locality);
-        next_ = next;
-        limit_ = ahead(most_blocks);
+        if (strided_ != nullptr) {
+            // Of three lanes for the x, y and z of a point, so that triples, of stride 3, get all of their three lines.
+            constexpr auto ahead = static_cast<std::ptrdiff_t>(bytes_ahead / (block_coordinates * sizeof(double)) * block_pairs);
+            for (std::size_t c = 0; c < pair_coordinates; ++c) {
+                const std::ptrdiff_t pair = static_cast<std::ptrdiff_t>(i) + ahead + 3 * static_cast<std::ptrdiff_t>(c % 3);
+                __builtin_prefetch(static_cast<const std::byte*>(strided_->data(c)) + element_ * (pair < last_ ? pair : last_));
+            }
+        } else if (end_ != nullptr) {
+            const auto* const at = static_cast<const std::byte*>(address);
+            const std::byte* const until = static_cast<std::size_t>(end_ - at) > bytes_ahead ? at + bytes_ahead : end_;
+#pragma GCC unroll 1
+            for (; next_ < until; next_ += line) __builtin_prefetch(next_);
+        }
     }
-
-    /// While other work is being done.
-    FASTCCD_INLINE void lines(unsigned count)
-    {
-        if (next_ >= limit_) return;
-        for (unsigned k = 0; k < count; ++k) __builtin_prefetch(next_ + k * line, 0, locality);
-        next_ += count * line;
-    }
-
-    [[nodiscard]] FASTCCD_INLINE const double* prefetched() const { return next_; }
 
 private:
-    static constexpr std::size_t line = 8;
-    static constexpr int locality = 3;  ///< First-level cache.
-    static constexpr std::size_t least_blocks = 8, most_blocks = 16;
+    static constexpr std::size_t line = 64;
+    static constexpr std::size_t bytes_ahead = 8 * block_coordinates * sizeof(double);  ///< 8 blocks of doubles.
 
-    FASTCCD_INLINE const double* ahead(std::size_t blocks) const
-    {
-        return static_cast<std::size_t>(end_ - limit_) > blocks * block_coordinates ? limit_ + blocks * block_coordinates : end_;
-    }
-
-    const double* next_ = nullptr;
-    const double* limit_ = nullptr;
-    const double* end_ = nullptr;
+    const std::byte* next_ = nullptr;
+    const std::byte* end_ = nullptr;
+    const PairView* strided_ = nullptr;
+    std::ptrdiff_t element_ = 0, last_ = 0;  ///< Bytes from a pair's coordinate to the next one's; the last pair.
 };
 
 /// What the stages read of a tile: its pairs in blocks of the native layout; of indexed pairs those alone that their boxes do
@@ -189,7 +199,7 @@ public:
     FASTCCD_INLINE BlockSource(const TileRequest& tile, TileScratch& scratch)
         : tile_{tile}, scratch_{scratch}, indexed_{tile.source->view == nullptr},
           size_{indexed_ ? list_pairs<Batch>(tile, scratch.listed) : tile.count},
-          prefetcher{*tile.source, tile.first, scratch.prefetched}
+          prefetcher_{*tile.source, tile.first}
     {
         if (!indexed_ || size_ == 0) return;
         for (std::size_t i = 0; i < indexed_ahead * block_pairs; i += block_pairs) resolve(i);
@@ -209,9 +219,7 @@ public:
     /// double; otherwise one of scratch.blocks is filled and returned. Blocks are to be read in order.
     FASTCCD_INLINE const double* block(std::size_t i)
     {
-        const double* const found = indexed_ ? transposed(i) : native(i);
-        prefetcher.at_block(found);
-        return found;
+        return indexed_ ? transposed(i) : native(i);
     }
 
 private:
@@ -244,16 +252,19 @@ private:
         const std::size_t count = size_ - i < block_pairs ? size_ - i : block_pairs;
         const bool wide = pairs.scalar() == PairView::Scalar::float64;
         double* const block = filled(i);
+        const auto* const doubles = static_cast<const double*>(pairs.data()) + offset;
+        const auto* const floats = static_cast<const float*>(pairs.data()) + offset;
+        prefetcher_.at_block(first, wide ? static_cast<const void*>(doubles) : floats);
         switch (pairs.layout()) {
             case PairView::Layout::blocked:
-                if (wide) return static_cast<const double*>(pairs.data()) + offset;
-                widen_block(static_cast<const float*>(pairs.data()) + offset, block);
+                if (wide) return doubles;
+                widen_block(floats, block);
                 break;
             case PairView::Layout::interleaved:
                 if (wide)
-                    pack_interleaved(static_cast<const double*>(pairs.data()) + offset, count, block);
+                    pack_interleaved<Batch>(doubles, count, block);
                 else
-                    pack_interleaved(static_cast<const float*>(pairs.data()) + offset, count, block);
+                    pack_interleaved<Batch>(floats, count, scratch_.wide, block);
                 break;
             case PairView::Layout::strided:
                 if (wide)
@@ -269,9 +280,7 @@ private:
     TileScratch& scratch_;
     const bool indexed_;
     const std::size_t size_;
-
-public:
-    Prefetcher prefetcher;
+    Prefetcher prefetcher_;
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -36,7 +36,7 @@ public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
         Pipeline pipeline{request, scratch};
-        pipeline.prepare();
+        pipeline.prepare(request.count);
         for (std::size_t i = 0; i < pipeline.source.size(); i += group_pairs) {
             const std::size_t left = pipeline.source.size() - i, count = left < group_pairs ? left : group_pairs;
             if (scratch.dense) {
@@ -49,7 +49,6 @@ public:
         pipeline.compare_screened(true);
         pipeline.find_roots(true);
         pipeline.refine(true);
-        scratch.prefetched = pipeline.source.prefetcher.prefetched();
     }
 
 private:
@@ -67,11 +66,11 @@ private:
     {
     }
 
-    FASTCCD_INLINE void prepare()
+    FASTCCD_INLINE void prepare(std::size_t count)
     {
-        for (std::size_t i = 0; i < tile_pairs; i += Lane<L>::width)
+        for (std::size_t i = 0; i < count; i += width)
             Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
-        __builtin_memset(scratch.roots, 0, sizeof scratch.roots);
+        __builtin_memset(scratch.roots, 0, count);
         __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
         __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
         scratch.screened.size = scratch.candidates.size = scratch.survivors.size = 0;
@@ -252,7 +251,6 @@ private:
 
     FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
     {
-        source.prefetcher.lines(width);
         RootSearch& search = scratch.search;
         PairRecord<L> record;
         read(scratch.candidates, i, record);
@@ -298,7 +296,6 @@ private:
 
     FASTCCD_INLINE void approach_root(unsigned i)
     {
-        source.prefetcher.lines((width + 1) / 2);
         RootSearch& search = scratch.search;
         const Bracket<L> piece{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
         Lane<L>::store(&search.guess[i], clipped_step(load_cubic<L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
@@ -307,7 +304,6 @@ private:
     /// Dismisses lanes without inclusion anywhere near the root.
     FASTCCD_INLINE void reject_coarsely(unsigned i, unsigned lanes)
     {
-        source.prefetcher.lines(width);
         PairRecord<L> root;
         read(scratch.candidates, i, root);
         root.f = load_cubic<L>(scratch.search.f, i);

@@ -40,7 +40,7 @@ public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
         SeparationPipeline pipeline{request, scratch};
-        pipeline.prepare();
+        pipeline.prepare(request.count);
         const std::size_t size = pipeline.source.size();
         for (std::size_t i = 0; i < size; i += block_pairs) {
             const double* const block = pipeline.source.block(i);
@@ -51,7 +51,6 @@ public:
         }
         pipeline.look_first(1);
         pipeline.advance(1);
-        scratch.prefetched = pipeline.source.prefetcher.prefetched();
     }
 
 private:
@@ -69,10 +68,10 @@ private:
     {
     }
 
-    FASTCCD_INLINE void prepare()
+    FASTCCD_INLINE void prepare(std::size_t count)
     {
-        for (std::size_t i = 0; i < tile_pairs; i += width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
-        __builtin_memset(scratch.roots, 0, sizeof scratch.roots);
+        for (std::size_t i = 0; i < count; i += width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+        __builtin_memset(scratch.roots, 0, count);
         __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
         __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
         scratch.separating.size = scratch.advancing.size = 0;
@@ -132,7 +131,6 @@ private:
     {
         SeparationRecord<L> record;
         while (scratch.separating.size >= least) {
-            source.prefetcher.lines(2 * width);
             const unsigned lanes = take_last(scratch.separating, record);
             look_first(record, lanes);
         }
@@ -152,7 +150,6 @@ private:
         while (scratch.advancing.size >= least) {
             unsigned lanes = take_last(scratch.advancing, record);
             do {
-                source.prefetcher.lines(2 * width);
                 const StepOutcome<L> outcome = step<kind>(record, parameters, limit);
                 const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
                 if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
