@@ -7,6 +7,7 @@
 
 #include <fastccd/fastccd.hpp>
 
+#include <halves_certificate.hpp>
 #include <householder.hpp>
 #include <records.hpp>
 #include <sign_change.hpp>
@@ -61,7 +62,7 @@ bool passes_certificates(const Coordinates& pair, const SearchParameters& parame
     record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
     if (separated || cubic_certificate(record.cubic, record.scale.volume, bounds).value) return false;
     const auto apart = visit_edge_functions<kind>(record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
-        return quadratic_certificate<kind>(p, q, t, s, record.scale, bounds);
+        return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, parameters.bounds.halves());
     });
     return !apart.value && in_lane_range(record.cubic, extents, parameters.bounds).value;
 }

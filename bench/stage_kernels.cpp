@@ -10,6 +10,7 @@
 #endif
 
 #include <area_inclusion.hpp>
+#include <halves_certificate.hpp>
 #include <householder.hpp>
 #include <projected_inclusion.hpp>
 #include <records.hpp>
@@ -60,11 +61,18 @@ FASTCCD_INLINE unsigned for_each_batch(const Queue* queues, StageOfRecord stage)
     return kept;
 }
 
-/// Length and volume certificates: what every pair costs, loading included. With `area`, all three certificates.
-template <PairKind kind, bool area>
+/// What is computed of the pairs, loading included.
+enum class Certificates {
+    screening,  ///< Length and volume: what every pair costs.
+    whole,      ///< All three on the whole interval, as the certified search begins.
+    halves,     ///< Screening, then volume and area on both halves, as the pipeline goes on.
+};
+
+template <PairKind kind, Certificates wanted>
 unsigned certificates(const bench::StageInput& input)
 {
-    const CertificateBounds bounds = input.parameters->bounds.certificates();
+    const ErrorBounds& all = input.parameters->bounds;
+    const CertificateBounds bounds = all.certificates(), halves = all.halves();
     unsigned kept = 0;
     for (std::size_t i = 0; i < input.pairs; i += block_pairs)
         for (unsigned lane = 0; lane < block_pairs; lane += width) {
@@ -75,14 +83,24 @@ unsigned certificates(const bench::StageInput& input)
             const Scales<L> scale = scales(extents);
             const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
             apart = apart | cubic_certificate(cubic, scale.volume, bounds);
-            if constexpr (area)
+            if constexpr (wanted != Certificates::screening)
                 apart = apart | visit_edge_functions<kind>(
                                     r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                                        return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
+                                        if constexpr (wanted == Certificates::whole)
+                                            return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
+                                        else
+                                            return halves_certificate<kind>(cubic, p, q, t, s, scale, halves);
                                     });
-            kept += count(Lane<L>::bits(in_lane_range(cubic, extents, input.parameters->bounds)) & ~Lane<L>::bits(apart));
+            kept += count(Lane<L>::bits(in_lane_range(cubic, extents, all)) & ~Lane<L>::bits(apart));
         }
     return kept;
+}
+
+template <Certificates wanted>
+unsigned certificates(const bench::StageInput& input)
+{
+    return input.kind == PairKind::vertex_face ? certificates<PairKind::vertex_face, wanted>(input)
+                                               : certificates<PairKind::edge_edge, wanted>(input);
 }
 
 /// The monotone pieces of the cubic and the first in which it changes sign.
@@ -161,8 +179,9 @@ unsigned by_kind(const bench::StageInput& input)
 
 extern const bench::StageTable stage_table;
 const bench::StageTable stage_table{Isa::FASTCCD_KERNEL_ISA,
-                                    {{"screening", by_kind<certificates<vf, false>, certificates<ee, false>>, true},
-                                     {"certificates", by_kind<certificates<vf, true>, certificates<ee, true>>, true},
+                                    {{"screening", certificates<Certificates::screening>, true},
+                                     {"certificates", certificates<Certificates::whole>, true},
+                                     {"halves", certificates<Certificates::halves>, true},
                                      {"sign_change", sign_change, false},
                                      {"householder_clipped", householder_clipped, false},
                                      {"householder_bracketed", householder_bracketed, false},

@@ -22,7 +22,7 @@ struct StageInput {
     const SearchParameters* parameters;
     const double* blocks;         ///< `pairs` packed pairs, a multiple of 8.
     std::size_t pairs;
-    const PairQueue* candidates;  ///< Pairs that no certificate on the whole interval dismisses.
+    const PairQueue* candidates;  ///< Pairs that no certificate dismisses.
     const RootQueue* roots;       ///< Pieces with a sign change of their cubic; `guess` is after the coarse steps.
 };
 
@@ -35,7 +35,7 @@ struct Stage {
     bool takes_blocks;  ///< Input is `blocks`; else the queues.
 };
 
-inline constexpr unsigned stage_count = 7;
+inline constexpr unsigned stage_count = 8;
 
 struct StageTable {
     Isa isa;

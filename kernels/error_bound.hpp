@@ -120,6 +120,19 @@ struct ErrorBounds {
                 (24 * end_rho + 56 + slack) * u + 2 * 2 * 4 * quadratic_on_interval(), linear()};
     }
 
+    /// Bounds for certificates on both halves of the interval (halves_certificate.hpp), each for the largest multiple of
+    /// a coefficient there and so more than enough for the others. Added, as in early(), is twice the search's bound.
+    /// Quadratic: twice an inner coefficient errs by (4 rho + 4) + (8 rho + 12) / 2 + 4, its size; 4 times the value in
+    /// the middle is a sum of two such, of size 8: 16 rho + 36. Sum of three: (12 rho + 22) + (24 rho + 56) / 2 + 12, and
+    /// 48 rho + 148. Cubic: 3 f0 errs by 3 (18 rho + 28) + 18, 3 f0 + 3 f1 by 108 rho + 252, 3 f1 + 3 f2 by
+    /// 108 rho + 264 (sizes 36), their sum, of size 72, by 216 rho + 588; the value in the middle by less.
+    [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds halves() const
+    {
+        return {(216 * rho + 588 + slack) * u + 12 * (2 * cubic_on_interval()),
+                (16 * rho + 36 + slack) * u + 4 * (2 * quadratic_on_interval()),
+                (48 * rho + 148 + slack) * u + 4 * (2 * 4 * quadratic_on_interval()), 0.0};
+    }
+
     /// The bounds of the certificates on the whole interval.
     [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds certificates() const
     {

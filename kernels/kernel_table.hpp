@@ -76,7 +76,7 @@ struct TileScratch {
     std::uint64_t is_undecided[tile_pairs / 64];
     std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. What lanes report is proven.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
-    PairQueue candidates;    ///< Pairs without an area certificate either.
+    PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.
     RootSearch search;
     RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.

@@ -1,9 +1,10 @@
 // The stages of the narrow phase over one tile:
 //
-//     block -> length, volume certificates -> [screened] -> area certificate -> [candidates] -> sign-change intervals,
-//                     |                                           |              first Householder steps, coarse inclusion
-//                     v                                           v                               |               |
-//                   apart                                       apart                           apart        [survivors]
+//     block -> length, volume certificates -> [screened] -> volume, area certificates -> [candidates] -> sign-change intervals,
+//                     |                                     on both halves                       first Householder steps,
+//                     v                                           |                              coarse inclusion
+//                   apart                                         v                               |               |
+//                                                               apart                           apart        [survivors]
 //                                                                                                                 |
 //                          certified search  <- undecided, here and above -  refinement, leaf, inclusion <--------+
 //                                                                                  |
@@ -15,7 +16,8 @@
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
-//   sign tests cover [0, 1] by intervals that overlap by at least one leaf (see error_bound.hpp);
+//   sign tests cover [0, 1] by intervals that overlap by at least one leaf, or by its halves, which
+//   no leaf straddles (see error_bound.hpp);
 // - "contact in leaf j" is concluded only from a proof (a strict sign change of the cubic over the leaf and
 //   strict inclusion throughout it), so that no certificate of absence can hold there, together with
 //   "apart" for everything before it.
@@ -24,6 +26,7 @@
 
 #include <area_inclusion.hpp>
 #include <block_source.hpp>
+#include <halves_certificate.hpp>
 #include <householder.hpp>
 #include <projected_inclusion.hpp>
 #include <records.hpp>
@@ -55,13 +58,13 @@ private:
     static constexpr unsigned width = Lane<L>::width;
 
     const SearchParameters& parameters;
-    const CertificateBounds whole, early;
+    const CertificateBounds whole, halves, early;
     const double cutoff;
     TileScratch& scratch;
     BlockSource<kind, L> source;
 
     FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& s)
-        : parameters{*request.parameters}, whole{parameters.bounds.certificates()}, early{parameters.bounds.early()},
+        : parameters{*request.parameters}, whole{parameters.bounds.certificates()}, halves{parameters.bounds.halves()}, early{parameters.bounds.early()},
           cutoff{request.cutoff}, scratch{s}, source{request, s}
     {
     }
@@ -143,7 +146,7 @@ private:
         }
     }
 
-    /// Where most pairs go on: straight to the area certificate, without a queue.
+    /// Where most pairs go on: straight to the certificates on both halves, without a queue.
     void screen_dense_group(std::size_t first, std::size_t count)
     {
         std::size_t kept = 0;
@@ -163,14 +166,13 @@ private:
         scratch.dense = 3 * kept >= count;
     }
 
-    /// Certificates that need more than screening has computed.
+    /// Certificates that need more than screening has computed. Those on both halves include the area certificate on the whole.
     FASTCCD_INLINE void examine(const PairRecord<L>& record, unsigned lanes)
     {
         if (cutoff < 1.0) lanes &= ~Lane<L>::bits(apart_until_cutoff(record));
-        // Area certificate on the whole interval.
         const auto apart = visit_edge_functions<kind>(
             record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                return quadratic_certificate<kind>(p, q, t, s, record.scale, whole);
+                return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, halves);
             });
         lanes &= ~Lane<L>::bits(apart);
         if (lanes == 0) return;

@@ -97,6 +97,9 @@ mutant 'no margin of sums of edge functions' $bounds 's/12 \* rho \+ 58 \+ 8 \* 
 mutant 'no margin of the early cubic' $bounds 's/ \+ 3 \* 2 \* cubic_on_interval\(\)//' error_bounds_test
 mutant 'no margin of early edge functions' $bounds 's/ \+ 2 \* 2 \* quadratic_on_interval\(\)//' error_bounds_test
 mutant 'no margin of early sums' $bounds 's/ \+ 2 \* 2 \* 4 \* quadratic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of the halved cubic' $bounds 's/ \+ 12 \* \(2 \* cubic_on_interval\(\)\)//' error_bounds_test
+mutant 'no margin of halved edge functions' $bounds 's/ \+ 4 \* \(2 \* quadratic_on_interval\(\)\)//' error_bounds_test
+mutant 'no margin of halved sums' $bounds 's/ \+ 4 \* \(2 \* 4 \* quadratic_on_interval\(\)\)//' error_bounds_test
 mutant 'change of edge functions = 0' kernels/projected_inclusion.hpp 's/broadcast<L>\(8\.0\) \* \(delta/broadcast<L>(0.0) * (delta/' certificates_test same_bits_test truth_test
 
 # ---- Certificates of the whole interval loosened
@@ -109,6 +112,14 @@ mutant 'linear certificate at one end' $certificates 's/less\(bound, min\(s\.abo
 mutant 'touching counts as apart' $certificates 's/less\(bound, min\(s\.above, e\.above\)\)/(!less(min(s.above, e.above), bound))/' certificates_test
 mutant 'outside one side is outside (vertex-face)' $certificates 's/(max\(p\.smallest, q\.smallest, t\.smallest\)\)) &/$1 |/' certificates_test
 mutant 'one end point on one side (edge-edge)' $certificates 's/min\(p\.smallest, t\.smallest\)/max(p.smallest, t.smallest)/' certificates_test
+
+halves=kernels/halves_certificate.hpp
+mutant 'apart on one half is apart' $halves 's/return first & second/return first | second/' certificates_test
+mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
+mutant 'halved edge functions by sign alone' $halves 's/bound = broadcast<L>\(bounds\.quadratic\) \* area/bound = broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test
+mutant 'halved sums by sign alone' $halves 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test stress
+mutant 'halved cubic without the middle' $halves 's/\{f\.start, a, a \+ b, middle\}/{f.start, a, a, a}/' certificates_test same_bits_test
+mutant 'halved quadratic without the middle' $halves 's/return \{start, first, first \+ second, second, end\}/return {start, first, first, second, end}/' certificates_test same_bits_test
 
 # ---- The certified search loosened
 search=scalar/pair_polynomials.hpp

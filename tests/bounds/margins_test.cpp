@@ -5,6 +5,7 @@
 // minus the search's smallest coefficient, plus the search's bound. Adding a constant to the polynomial changes
 // neither, so this needs no hunt for polynomials that nearly vanish.
 #include <bernstein.hpp>
+#include <halves_certificate.hpp>
 #include <magnitudes.hpp>
 #include <projected_inclusion.hpp>
 
@@ -213,6 +214,65 @@ TEST(Margins, EarlyEdgeFunctions)
     };
     expect_bound("early().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
     expect_bound("early().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
+}
+
+/// Certificates on both halves, against the search on parts of one of them. Lanes compare multiples of coefficients with
+/// one bound; only a twelfth of it (edge functions: a fourth) is certain of each coefficient.
+struct Half {
+    bool second;
+    Part leaf;
+
+    explicit Half(const Input& in) : second{in.a >= 0.5}, leaf{second ? part_of(0.5, 1.0, in) : part_of(0.0, 0.5, in)} {}
+};
+
+TEST(Margins, HalvedCubic)
+{
+    expect_bound("halves().cubic", 0.1, [](const Input& in) {
+        const Computed c{in};
+        const Half half{in};
+        const auto f = portable::halved(portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1)));
+        const Cubic<double> seen = half.second ? Cubic<double>{f.second[0] / 8, f.second[1] / 12, f.second[2] / 6, f.second[3]}
+                                               : Cubic<double>{f.first[0], f.first[1] / 6, f.first[2] / 12, f.first[3] / 8};
+        const Cubic<double> local = portable::on_interval(cubic_of(c), half.leaf.a, half.leaf.b);
+        const double margin = std::max(portable::smallest(seen) - portable::smallest(local),
+                                       portable::largest(local) - portable::largest(seen));
+        return 12 * (margin + search_bound(c)) / (c.bounds.halves().cubic * c.scale.volume);
+    }, ordinary_shifts, effort);
+}
+
+TEST(Margins, HalvedEdgeFunctions)
+{
+    const auto ratio = [](const Input& in, bool sum) {
+        const Computed c{in};
+        Input origin = in;
+        for (std::size_t axis = 0; sum && axis < 3; ++axis) {
+            std::swap(origin.x[axis], origin.x[3 + axis]);
+            std::swap(origin.x[12 + axis], origin.x[15 + axis]);
+        }
+        const Computed d{origin};
+        const Half half{in};
+        const auto lanes = sum ? portable::subtract_then_add(portable::cross_product(c.r, 1, 2), portable::cross_product(c.r, 0, 2),
+                                                             portable::cross_product(c.r, 0, 1))
+                               : portable::cross_product(c.r, 0, 1);
+        const auto search = sum ? portable::cross_product(d.r, 1, 2) : portable::cross_product(c.r, 0, 1);
+        double worst = -1;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto f = portable::halved(component(lanes.start, axis), component(lanes.twice_middle, axis),
+                                            component(lanes.end, axis));
+            const Quadratic<double> seen = half.second ? Quadratic<double>{f.middle / 4, f.second / 2, f.end}
+                                                       : Quadratic<double>{f.start, f.first / 2, f.middle / 4};
+            const Quadratic<double> local = component_on(search, axis, half.leaf);
+            const double margin = std::max(portable::smallest(seen) - portable::smallest(local),
+                                           portable::largest(local) - portable::largest(seen));
+            const double search_bound = d.bounds.quadratic_on_interval() * area_of(d.scale, axis);
+            const auto halves = c.bounds.halves();
+            worst = std::max(worst, 4 * (margin + search_bound) /
+                                        ((sum ? halves.quadratic_sum : halves.quadratic) * area_of(c.scale, axis)));
+        }
+        return worst;
+    };
+    expect_bound("halves().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
+    expect_bound("halves().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+// The volume and area certificates on both halves of the interval, by one step of de Casteljau's algorithm.
+//
+// On a half, coefficients lie closer to the function than on the whole interval, and another projection may decide than on the
+// other half: of random pairs without a certificate on the whole, one on either half dismisses 53 % (vertex-face) and 42 %
+// (edge-edge), before any root is sought. They include those on the whole interval, but for their larger margins. The certified
+// search examines the same two halves next, so what is concluded here with a margin (ErrorBounds::halves) it concludes too.
+#pragma once
+
+#include <certificates.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Bernstein coefficients of a quadratic on both halves, as multiples that need no division.
+template <class L>
+struct HalvedQuadratic {
+    L start, first;  ///< On the first half: the coefficient at 0, and twice the inner one.
+    L middle;        ///< 4 times the value at 1/2, which both halves share.
+    L second, end;   ///< On the second half: twice the inner one, and the coefficient at 1.
+};
+
+template <class L>
+FASTCCD_INLINE HalvedQuadratic<L> halved(L start, L twice_middle, L end)
+{
+    const L inner = broadcast<L>(0.5) * twice_middle;
+    const L first = start + inner, second = inner + end;
+    return {start, first, first + second, second, end};
+}
+
+/// Bernstein coefficients of a cubic on both halves, as multiples too.
+template <class L>
+struct HalvedCubic {
+    L first[4];   ///< 1, 6, 12 and 8 times those on the first half ...
+    L second[4];  ///< ... 8, 12, 6 and 1 times those on the second.
+};
+
+template <class L>
+FASTCCD_INLINE HalvedCubic<L> halved(const CoplanarityCubic<L>& f)
+{
+    const L three = broadcast<L>(3.0);
+    const L a = three * f.start + f.thrice_second, b = f.thrice_second + f.thrice_third, c = f.thrice_third + three * f.end;
+    const L middle = (f.start + f.end) + b;
+    return {{f.start, a, a + b, middle}, {middle, b + c, c, f.end}};
+}
+
+/// All four coefficients beyond the bound on one side.
+template <class L>
+FASTCCD_INLINE LaneMask<L> one_sign(const L (&f)[4], L bound)
+{
+    return less(bound, min(min(f[0], f[1]), min(f[2], f[3]))) |
+           less(max(max(f[0], f[1]), max(f[2], f[3])), broadcast<L>(0.0) - bound);
+}
+
+/// Apart over the whole interval: on either half by the volume certificate, or in at least one coordinate projection.
+/// `bounds` are ErrorBounds::halves().
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> halves_certificate(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p,
+                                              const QuadraticVector<L>& q, const QuadraticVector<L>& t,
+                                              const QuadraticVector<L>& s, const Scales<L>& scale,
+                                              const CertificateBounds& bounds)
+{
+    const HalvedCubic<L> cubic = halved(f);
+    const L volume_bound = broadcast<L>(bounds.cubic) * scale.volume;
+    LaneMask<L> first = one_sign(cubic.first, volume_bound), second = one_sign(cubic.second, volume_bound);
+
+    const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
+        const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
+            return halved(component(v.start), component(v.twice_middle), component(v.end));
+        };
+        const HalvedQuadratic<L> hp = halves_of(p), hq = halves_of(q), ht = halves_of(t), hs = halves_of(s);
+        const L bound = broadcast<L>(bounds.quadratic) * area, bound_sum = broadcast<L>(bounds.quadratic_sum) * area;
+        const auto on_first = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA { return sign_range(h.start, h.first, h.middle); };
+        const auto on_second = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA { return sign_range(h.middle, h.second, h.end); };
+        first = first | apart_in_projection<kind, L>(on_first(hp), on_first(hq), on_first(ht), on_first(hs), bound, bound_sum);
+        second = second | apart_in_projection<kind, L>(on_second(hp), on_second(hq), on_second(ht), on_second(hs), bound, bound_sum);
+    };
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz);
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx);
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy);
+    return first & second;
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
