@@ -55,6 +55,7 @@ template <PairKind kind>
 bool passes_certificates(const Coordinates& pair, const SearchParameters& parameters, PairRecord<double>& record)
 {
     const CertificateBounds bounds = parameters.bounds.certificates();
+    record.pair = 0.0;
     record.r = relative_motion<double>(pair.data(), 1, parameters.t_max);
     Extents<double> extents{};
     const bool separated = linear_certificate<kind>(record.r, bounds, extents).value;
@@ -64,14 +65,16 @@ bool passes_certificates(const Coordinates& pair, const SearchParameters& parame
     const auto apart = visit_edge_functions<kind>(record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
         return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, parameters.bounds.halves());
     });
-    return !apart.value && in_lane_range(record.cubic, extents, parameters.bounds).value;
+    mark_window(record, apart);
+    return !(apart.first.value && apart.second.value) && in_lane_range(record.cubic, extents, parameters.bounds).value;
 }
 
 /// Fills in the first piece in which the cubic changes sign; false if there is none for certain.
 bool has_root(const SearchParameters& parameters, PairRecord<double>& record)
 {
-    const MonotonePieces<double> pieces =
-        monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds, parameters.leaf_width);
+    const Window<double> window = window_of(record.pair);
+    const MonotonePieces<double> pieces = monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds,
+                                                          parameters.leaf_width, window.low, window.high);
     if (!pieces.certain.value) return false;
     for (int i = 0; i < 3; ++i) {
         if (!opposite_signs(pieces.value[i], pieces.value[i + 1]).value) continue;
@@ -80,7 +83,7 @@ bool has_root(const SearchParameters& parameters, PairRecord<double>& record)
         record.low = pieces.time[i];
         record.high = pieces.time[i + 1];
         record.guess = (record.low + record.high) * 0.5;
-        for (int step = 0; step < coarse_steps; ++step)
+        for (int step = 0; step < quick_steps; ++step)
             record.guess = clipped_step<double>(record.f, {record.low, record.high}, record.guess);
         return true;
     }

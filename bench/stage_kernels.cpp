@@ -88,8 +88,8 @@ unsigned certificates(const bench::StageInput& input)
                                     r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
                                         if constexpr (wanted == Certificates::whole)
                                             return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
-                                        else
-                                            return halves_certificate<kind>(cubic, p, q, t, s, scale, halves);
+                                        const auto on = halves_certificate<kind>(cubic, p, q, t, s, scale, halves);
+                                        return on.first & on.second;
                                     });
             kept += count(Lane<L>::bits(in_lane_range(cubic, extents, all)) & ~Lane<L>::bits(apart));
         }
@@ -106,9 +106,11 @@ unsigned certificates(const bench::StageInput& input)
 /// The monotone pieces of the cubic and the first in which it changes sign.
 unsigned sign_change(const bench::StageInput& input)
 {
-    return for_each_batch(input.candidates, [&](const PairRecord<L>& record) FASTCCD_INLINE_LAMBDA {
-        const MonotonePieces<L> pieces = monotone_pieces(bernstein(record.cubic), record.scale.volume,
-                                                         input.parameters->bounds, input.parameters->leaf_width);
+    return for_each_batch(input.candidates, [&](PairRecord<L>& record) FASTCCD_INLINE_LAMBDA {
+        compute_pair_again(record);
+        const Window<L> window = window_of(record.pair);
+        const MonotonePieces<L> pieces = monotone_pieces(bernstein(record.cubic), record.scale.volume, input.parameters->bounds,
+                                                         input.parameters->leaf_width, window.low, window.high);
         const LaneMask<L> first = opposite_signs(pieces.value[0], pieces.value[1]);
         const LaneMask<L> second = opposite_signs(pieces.value[1], pieces.value[2]);
         const LaneMask<L> third = opposite_signs(pieces.value[2], pieces.value[3]);
@@ -125,13 +127,13 @@ unsigned householder_clipped(const bench::StageInput& input)
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         compute_again(root, *input.parameters);
         L guess = (root.low + root.high) * broadcast<L>(0.5);
-        for (int step = 0; step < coarse_steps; ++step) guess = clipped_step<L>(root.f, {root.low, root.high}, guess);
+        for (int step = 0; step < quick_steps; ++step) guess = clipped_step<L>(root.f, {root.low, root.high}, guess);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
     });
 }
 
-/// And as it takes them to the end, which keep a bracket.
+/// And as it takes them for the roots that few steps do not decide, on a bracket that closes.
 unsigned householder_bracketed(const bench::StageInput& input)
 {
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
@@ -139,7 +141,7 @@ unsigned householder_bracketed(const bench::StageInput& input)
         const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
         Bracket<L> bracket{root.low, root.high};
         L guess = root.guess;
-        for (int step = 0; step < fine_steps; ++step) guess = bracketed_step(root.f, rising, bracket, guess);
+        for (int step = 0; step < most_steps; ++step) guess = bracketed_step(root.f, rising, bracket, guess);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
     });
@@ -151,7 +153,7 @@ unsigned projected(const bench::StageInput& input)
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         compute_again(root, *input.parameters);
         const Inclusion<L> found =
-            projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(coarse_bracket), input.parameters->bounds);
+            projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(quick_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(found.absent);
     });
 }
@@ -162,7 +164,7 @@ unsigned area(const bench::StageInput& input)
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         compute_again(root, *input.parameters);
         const LaneMask<L> absent =
-            area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(coarse_bracket), input.parameters->bounds);
+            area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(quick_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(absent);
     });
 }

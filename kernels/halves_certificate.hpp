@@ -50,13 +50,18 @@ FASTCCD_INLINE LaneMask<L> one_sign(const L (&f)[4], L bound)
            less(max(max(f[0], f[1]), max(f[2], f[3])), broadcast<L>(0.0) - bound);
 }
 
-/// Apart over the whole interval: on either half by the volume certificate, or in at least one coordinate projection.
-/// `bounds` are ErrorBounds::halves().
+/// Apart on the first half of the interval, and on the second.
+template <class L>
+struct ApartOnHalves {
+    LaneMask<L> first, second;
+};
+
+/// On either half by the volume certificate, or in at least one coordinate projection. `bounds` are ErrorBounds::halves().
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> halves_certificate(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p,
-                                              const QuadraticVector<L>& q, const QuadraticVector<L>& t,
-                                              const QuadraticVector<L>& s, const Scales<L>& scale,
-                                              const CertificateBounds& bounds)
+FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p,
+                                                   const QuadraticVector<L>& q, const QuadraticVector<L>& t,
+                                                   const QuadraticVector<L>& s, const Scales<L>& scale,
+                                                   const CertificateBounds& bounds)
 {
     const HalvedCubic<L> cubic = halved(f);
     const L volume_bound = broadcast<L>(bounds.cubic) * scale.volume;
@@ -76,7 +81,7 @@ FASTCCD_INLINE LaneMask<L> halves_certificate(const CoplanarityCubic<L>& f, cons
     along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz);
     along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx);
     along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy);
-    return first & second;
+    return {first, second};
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

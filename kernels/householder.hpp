@@ -11,14 +11,15 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
 // How far each stage goes, found by measuring; results do not depend on it, only how many pairs stay undecided.
 
-/// Half width of the bracket on which candidates are dismissed before full refinement: two steps usually come
-/// closer, and edge functions of most candidates differ from zero by more than 8 times this.
-inline constexpr double coarse_bracket = 0x1p-8;
-inline constexpr int coarse_steps = 2;
-/// Half width of the bracket around a refined root: small against any curvature that matters, large against E_tol.
+/// Steps before a root is decided for the first time; with four, what is saved later is spent here.
+inline constexpr int quick_steps = 3;
+/// Half width of the bracket around its root on which a candidate is dismissed then, and over which one in contact is to be
+/// inside: wide against rounding, narrow enough that edge functions rarely vanish within it.
+inline constexpr double quick_bracket = 0x1p-20;
+/// Steps of the others, which keep a bracket: after six, a few more are left to the certified search.
+inline constexpr int most_steps = 8;
+/// Half width of the bracket around their roots: small against any curvature that matters, large against E_tol.
 inline constexpr double fine_bracket = 0x1p-16;
-/// One step fewer leaves three times as many random contacts to the certified search, at 2 us each.
-inline constexpr int fine_steps = 4;
 
 /// Householder's next guess from s, with f(s) in `value`; any value, NaN included, far from a simple root.
 template <class L>

@@ -32,7 +32,7 @@ struct LaneQueue {
 /// Coordinates of pairs, in the order of PairView, and the pair: a block of many lanes.
 using ScreenedQueue = LaneQueue<25>;
 /// Fields: see PairRecord in simd/records.hpp.
-using PairQueue = LaneQueue<27>;
+using PairQueue = LaneQueue<19>;
 using RootQueue = LaneQueue<22>;
 /// With a minimum separation: fields of SeparationRecord, before and after its first look.
 struct SeparationQueue : LaneQueue<22> {};
@@ -40,16 +40,18 @@ struct AdvancingQueue : LaneQueue<35> {};
 
 /// What the search for roots works on, next to the rows of `candidates`.
 struct RootSearch {
+    alignas(64) double scale[4][PairQueue::capacity];  ///< Scales, in their order.
     alignas(64) double f[4][PairQueue::capacity];  ///< The cubic in the power basis.
     alignas(64) double threshold[PairQueue::capacity];
     alignas(64) double low[PairQueue::capacity], high[PairQueue::capacity];  ///< The piece in which the cubic changes sign.
     alignas(64) double guess[PairQueue::capacity];
     alignas(64) double later_low[PairQueue::capacity], later_high[PairQueue::capacity];  ///< The piece after that.
+    alignas(64) double end[PairQueue::capacity];  ///< Of the last piece.
     /// Per batch, bits of the lanes that have a first, second, third such piece.
     unsigned pieces[3][PairQueue::capacity];
 };
 
-/// What refinement works on, next to the rows of `survivors`.
+/// What refinement works on, next to the rows of `stubborn`.
 struct Refinement {
     alignas(64) double f[4][RootQueue::capacity];
     alignas(64) double low[RootQueue::capacity], high[RootQueue::capacity];  ///< A bracket that closes around the root.
@@ -79,7 +81,7 @@ struct TileScratch {
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.
     RootSearch search;
-    RootQueue survivors;     ///< Roots not dismissed on a coarse bracket.
+    RootQueue stubborn;      ///< Roots that few steps do not decide.
     Refinement refinement;
     SeparationQueue separating;  ///< With a minimum separation: pairs that no coordinate axis keeps apart.
     AdvancingQueue advancing;    ///< Pairs that the first look does not.

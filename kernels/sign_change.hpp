@@ -1,6 +1,6 @@
 // Sign-change intervals of the coplanarity cubic (paper, section 6).
 //
-// The roots of f' cut [0, 1] into at most three monotone pieces; a piece holds a root of f if and only
+// The roots of f' cut [0, 1], or a part of it, into at most three monotone pieces; a piece holds a root of f if and only
 // if the signs at its ends differ. With rounding: error_bound.hpp (monotone_piece) shows that end values
 // beyond +-threshold on one side prove that there is no root in the piece. A value within the threshold
 // leaves the pair undecided: it goes to the certified search.
@@ -26,7 +26,7 @@ FASTCCD_INLINE L evaluate(const PowerCubic<L>& f, L s)
 template <class L>
 struct MonotonePieces {
     PowerCubic<L> f;
-    L time[4];           ///< 0, the extrema of f inside (0, 1) in order (or 0 or 1), 1.
+    L time[4];           ///< low, the extrema of f inside (low, high) in order (or low or high), high.
     L value[4];          ///< f there.
     L threshold;         ///< See sign_threshold.
     LaneMask<L> certain; ///< All four values are beyond the threshold.
@@ -66,9 +66,10 @@ FASTCCD_INLINE PowerCubic<L> power_basis(const Cubic<L>& f)
     return {f.c0, three * g.d0, three * g.h, g.A};
 }
 
+/// Of [low, high], a part of [0, 1].
 template <class L>
-FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, const ErrorBounds& bounds,
-                                                 double leaf_width)
+FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, const ErrorBounds& bounds, double leaf_width,
+                                                 L low, L high)
 {
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     // Stable roots of d0 + 2 h s + A s^2: q = -(h + sign(h) sqrt D), x1 = q / A, x2 = d0 / q.
@@ -86,14 +87,11 @@ FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, co
 
     MonotonePieces<L> pieces;
     pieces.f = power_basis(f);
-    pieces.time[0] = zero;
-    pieces.time[1] = first;
-    pieces.time[2] = second;
-    pieces.time[3] = one;
-    pieces.value[0] = f.c0;
-    pieces.value[1] = evaluate(pieces.f, first);
-    pieces.value[2] = evaluate(pieces.f, second);
-    pieces.value[3] = f.c3;
+    pieces.time[0] = low;
+    pieces.time[1] = max(min(first, high), low);
+    pieces.time[2] = max(min(second, high), low);
+    pieces.time[3] = high;
+    for (int i = 0; i < 4; ++i) pieces.value[i] = evaluate(pieces.f, pieces.time[i]);
     pieces.threshold = sign_threshold(f, volume, bounds, leaf_width);
     const L closest = min(min(abs(pieces.value[0]), abs(pieces.value[1])),
                           min(abs(pieces.value[2]), abs(pieces.value[3])));

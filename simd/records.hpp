@@ -1,7 +1,7 @@
 // A pair, or one candidate root of a pair, as it waits in a queue between stages.
 #pragma once
 
-#include <certificates.hpp>
+#include <halves_certificate.hpp>
 #include <kernel_table.hpp>
 #include <sign_change.hpp>
 
@@ -13,7 +13,7 @@ template <class L>
 struct PairRecord {
     RelativeMotion<L> r;
     Scales<L> scale;
-    L pair;  ///< Index in the tile, as a double.
+    L pair;  ///< Index in the tile, as a double, plus a fraction: see mark_window.
     // From the screening on, for the pair:
     CoplanarityCubic<L> cubic;
     // From the search for roots on, for one monotone piece in which the cubic changes sign:
@@ -22,6 +22,33 @@ struct PairRecord {
     L low, high;  ///< The piece.
     L guess;      ///< Where the next stage starts.
 };
+
+/// The part of [0, 1] in which a pair may be in contact.
+template <class L>
+struct Window {
+    L low, high;
+};
+
+inline constexpr double first_half_apart = 0.25, second_half_apart = 0.375;
+
+/// Notes on which half a pair is apart, for one at most, as a fraction below one half of its number: a field less to queue.
+template <class L>
+FASTCCD_INLINE void mark_window(PairRecord<L>& record, const ApartOnHalves<L>& apart)
+{
+    const L zero = broadcast<L>(0.0);
+    record.pair = record.pair + select<L>(apart.first, broadcast<L>(first_half_apart),
+                                          select<L>(apart.second, broadcast<L>(second_half_apart), zero));
+}
+
+template <class L>
+FASTCCD_INLINE Window<L> window_of(L pair)
+{
+    // To the nearest integer, by adding and subtracting 2^52.
+    const L fraction = pair - ((pair + broadcast<L>(0x1p52)) - broadcast<L>(0x1p52));
+    const L between = broadcast<L>(0.5 * (first_half_apart + second_half_apart)), half = broadcast<L>(0.5);
+    const LaneMask<L> first = less(broadcast<L>(0.0), fraction) & less(fraction, between);
+    return {select<L>(first, half, broadcast<L>(0.0)), select<L>(less(between, fraction), half, broadcast<L>(1.0))};
+}
 
 // Call visit(field) for each field that a queue holds, always in the same order.
 
@@ -34,15 +61,14 @@ FASTCCD_INLINE void for_each_common_field(Record& record, Visit& visit)
     visit(record.pair);
 }
 
+// Scale and cubic are computed again after a queue: where one lane in five goes on, every field costs as much as four operations.
+
 template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const PairQueue&, Record& record, Visit visit)
 {
     for_each_common_field(record, visit);
-    visit(record.scale.yz), visit(record.scale.zx), visit(record.scale.xy), visit(record.scale.volume);
-    visit(record.cubic.start), visit(record.cubic.thrice_second), visit(record.cubic.thrice_third), visit(record.cubic.end);
 }
 
-/// Scale and cubic are computed again: few roots get here, but a batch that leaves one pays for every field.
 template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const RootQueue&, Record& record, Visit visit)
 {
@@ -50,13 +76,21 @@ FASTCCD_INLINE void for_each_field(const RootQueue&, Record& record, Visit visit
     visit(record.low), visit(record.high), visit(record.guess);
 }
 
-/// What RootQueue leaves out. Returns the cubic.
+/// What the queues leave out, for the pair.
+template <class L>
+FASTCCD_INLINE void compute_pair_again(PairRecord<L>& record)
+{
+    record.scale = scales(extents(record.r));
+    record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
+}
+
+/// And for a root. Returns the cubic.
 template <class L>
 FASTCCD_INLINE Cubic<L> compute_again(PairRecord<L>& root, const SearchParameters& parameters)
 {
-    const Cubic<L> f = bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1)));
+    compute_pair_again(root);
+    const Cubic<L> f = bernstein(root.cubic);
     root.f = power_basis(f);
-    root.scale = scales(extents(root.r));
     root.threshold = sign_threshold(f, root.scale.volume, parameters.bounds, parameters.leaf_width);
     return f;
 }
@@ -95,6 +129,21 @@ FASTCCD_INLINE void store(double (&rows)[4][size], unsigned i, const PowerCubic<
 
 template <class L, std::size_t size>
 FASTCCD_INLINE PowerCubic<L> load_cubic(const double (&rows)[4][size], unsigned i)
+{
+    return {Lane<L>::load(&rows[0][i]), Lane<L>::load(&rows[1][i]), Lane<L>::load(&rows[2][i]), Lane<L>::load(&rows[3][i])};
+}
+
+template <std::size_t size, class L>
+FASTCCD_INLINE void store(double (&rows)[4][size], unsigned i, const Scales<L>& scale)
+{
+    Lane<L>::store(&rows[0][i], scale.yz);
+    Lane<L>::store(&rows[1][i], scale.zx);
+    Lane<L>::store(&rows[2][i], scale.xy);
+    Lane<L>::store(&rows[3][i], scale.volume);
+}
+
+template <class L, std::size_t size>
+FASTCCD_INLINE Scales<L> load_scales(const double (&rows)[4][size], unsigned i)
 {
     return {Lane<L>::load(&rows[0][i]), Lane<L>::load(&rows[1][i]), Lane<L>::load(&rows[2][i]), Lane<L>::load(&rows[3][i])};
 }

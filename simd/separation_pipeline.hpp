@@ -11,6 +11,7 @@
 #pragma once
 
 #include <block_source.hpp>
+#include <lane_results.hpp>
 #include <records.hpp>
 #include <separation_steps.hpp>
 
@@ -40,12 +41,13 @@ public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
         SeparationPipeline pipeline{request, scratch};
-        pipeline.prepare(request.count);
+        clear_results<L>(scratch, request.count);
+        scratch.separating.size = scratch.advancing.size = 0;
         const std::size_t size = pipeline.source.size();
         for (std::size_t i = 0; i < size; i += block_pairs) {
             const double* const block = pipeline.source.block(i);
             for (unsigned lane = 0; lane < block_pairs && i + lane < size; lane += width) {
-                pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use(size - i - lane));
+                pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use<L>(size - i - lane));
                 if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
             }
         }
@@ -68,39 +70,6 @@ private:
     {
     }
 
-    FASTCCD_INLINE void prepare(std::size_t count)
-    {
-        for (std::size_t i = 0; i < count; i += width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
-        __builtin_memset(scratch.roots, 0, count);
-        __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
-        __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
-        scratch.separating.size = scratch.advancing.size = 0;
-    }
-
-    FASTCCD_INLINE static unsigned lanes_in_use(std::size_t left)
-    {
-        return left >= width ? (1u << width) - 1 : (1u << left) - 1;
-    }
-
-    /// Calls visit(i, lane) for the pairs of the lanes whose bit is set.
-    template <class Visit>
-    FASTCCD_INLINE static void for_each_pair(L pair, unsigned lanes, Visit visit)
-    {
-        alignas(64) double pairs[width];
-        Lane<L>::store(pairs, pair);
-        for (; lanes != 0; lanes &= lanes - 1) {
-            const int lane = __builtin_ctz(lanes);
-            visit(static_cast<unsigned>(pairs[lane]), lane);
-        }
-    }
-
-    FASTCCD_INLINE static void set_bit(std::uint64_t* words, unsigned i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
-
-    FASTCCD_INLINE void leave_undecided(L pair, unsigned lanes)
-    {
-        for_each_pair(pair, lanes, [&](unsigned i, int) FASTCCD_INLINE_LAMBDA { set_bit(scratch.is_undecided, i); });
-    }
-
     FASTCCD_INLINE void screen(const double* coordinates, L pair, unsigned lanes)
     {
         SeparationRecord<L> record;
@@ -108,7 +77,7 @@ private:
         const LaneMask<L> farther = farther_along_axis<kind>(record.r, parameters.separation, bounds, record.extents);
         record.pair = pair;
         const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
-        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(record.pair, beyond);
+        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(scratch, record.pair, beyond);
         const unsigned kept = decidable & ~Lane<L>::bits(farther);
         if (3 * static_cast<unsigned>(__builtin_popcount(kept)) >= 2 * width)
             look_first(record, kept);
@@ -123,7 +92,7 @@ private:
         const unsigned taken = queue.size < width ? queue.size : width;
         queue.size -= taken;
         read(queue, queue.size, record);
-        return lanes_in_use(taken);
+        return lanes_in_use<L>(taken);
     }
 
     /// The look at the middle, until fewer than `least` pairs are left.

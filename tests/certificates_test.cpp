@@ -56,7 +56,9 @@ std::string lane_proof(const oracle::Pair& pair, const SearchParameters& paramet
     const auto on_halves = portable::visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
         return portable::halves_certificate<kind>(cubic, p, q, t, s, scale, bounds.halves());
     });
-    if (on_halves.value) return "halves";
+    if ((on_halves.first.value && i.b <= 0.5) || (on_halves.second.value && i.a >= 0.5) ||
+        (on_halves.first.value && on_halves.second.value))
+        return "halves";
 
     const auto early = portable::RelativeMotion<double>{
         {r.start[0], r.start[1], r.start[2]},

@@ -146,16 +146,22 @@ mutant 'area: edges at the start only' $area 's/max\(largest_square\(r\.start\[0
 mutant 'area: speed too small' $area 's/sqrt\(largest_square\(subtract/broadcast<L>(0.5) * sqrt(largest_square(subtract/' error_bounds_test
 
 # ---- Decisions of the lanes loosened
-# Not among them, because others imply it: that the values at the ends of a bracket are beyond the threshold. On the coarse
+# Not among them, because others imply it: that the values at the ends of a bracket are beyond the threshold. On the quick
 # bracket a cubic that changes sign is beyond it; on the fine one `crosses` asks for strict signs up to the same ends.
 pipeline=simd/pipeline.hpp
-mutant 'lanes: uncertain pieces decided' $pipeline 's/bits\(pieces\.certain & less/bits(less/' certificates_test same_bits_test
+roots=simd/root_stages.hpp
+mutant 'lanes: uncertain pieces decided' $roots 's/bits\(pieces\.certain & less/bits(less/' certificates_test same_bits_test
 mutant 'lanes: pieces by sign alone' kernels/sign_change.hpp 's/less\(pieces\.threshold, closest\)/less(zero, closest)/' certificates_test same_bits_test stress
-mutant 'lanes: bracket not certain' $pipeline 's/beyond & opposite_signs\(at_low, at_high\)/beyond/' certificates_test same_bits_test
-mutant 'lanes: dismissed without a bracket' $pipeline 's/bracket\.certain & inclusion\.absent/inclusion.absent/' certificates_test same_bits_test
-mutant 'lanes: first leaf decided' $pipeline 's/inner & bracket\.certain/bracket.certain/' never_zero_test same_bits_test
-mutant 'lanes: crossing not asked for' $pipeline 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
-mutant 'lanes: crossing by sign alone' $pipeline 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
+mutant 'lanes: the other half looked at' simd/records.hpp 's/return \{select<L>\(first, half/return {select<L>(less(between, fraction), half/' same_bits_test
+mutant 'lanes: bracket not certain' $roots 's/beyond & opposite_signs\(at_low, at_high\)/beyond/' certificates_test same_bits_test
+mutant 'lanes: dismissed without a bracket' $roots 's/bracket\.certain & inclusion\.absent/inclusion.absent/' certificates_test same_bits_test
+mutant 'lanes: first leaf decided quickly' $roots 's/leaf\.inner & less_equal\(root/less_equal(root/' never_zero_test same_bits_test
+mutant 'lanes: first leaf decided' $roots 's/leaf\.inner & bracket\.certain/bracket.certain/' never_zero_test same_bits_test
+mutant 'lanes: crossing not asked for quickly' $roots 's/in_leaf & inclusion\.present/inclusion.present/' certificates_test same_bits_test
+mutant 'lanes: crossing not asked for' $roots 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
+mutant 'lanes: crossing by sign alone, quickly' $roots 's/less\(root\.threshold, min\(abs\(at_left\), abs\(at_right\)\)\) & //' certificates_test same_bits_test wide_lane_test stress
+mutant 'lanes: crossing by sign alone' $roots 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
+mutant 'lanes: a leaf beside its piece' $roots 's/less_equal\(root\.low, leaf\.left\) & less_equal\(leaf\.right, root\.high\) &//' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, min\(pk, qk, tk\)\) \| less\(max\(pk, qk, tk\), zero - bound\)/less(zero, min(pk, qk, tk)) | less(max(pk, qk, tk), zero)/' certificates_test same_bits_test
 mutant 'lanes: early cutoff too early' $pipeline 's/cutoff \+ 2 \* parameters\.leaf_width < 1\.0 \? cutoff \+ 2 \* parameters\.leaf_width : 1\.0/0.5 * cutoff/' indexed_test same_bits_test
 

@@ -12,7 +12,10 @@ using portable::Cubic;
 using portable::MonotonePieces;
 
 /// Cuts and values as the lanes compute them; the threshold is that of monotone_piece() alone.
-MonotonePieces<double> pieces_of(const Cubic<double>& f) { return portable::monotone_pieces(f, 0.0, ErrorBounds{1.0}, 0.0); }
+MonotonePieces<double> pieces_of(const Cubic<double>& f, double low = 0.0, double high = 1.0)
+{
+    return portable::monotone_pieces(f, 0.0, ErrorBounds{1.0}, 0.0, low, high);
+}
 
 double largest_coefficient(const Cubic<double>& f)
 {
@@ -64,14 +67,16 @@ struct WideCubic {
 /// units of the threshold. Were it 1, an end value at the threshold could hide a root.
 double dip_ratio(const Cubic<double>& f)
 {
-    const MonotonePieces<double> pieces = pieces_of(f);
     const WideCubic exact{f};
     double worst = 0;
-    for (int k = 0; k < 3; ++k) {
-        const auto [smallest, largest] = exact.range(mpf_class(pieces.time[k], 1024), mpf_class(pieces.time[k + 1], 1024));
-        const mpf_class below(mpf_class(std::min(pieces.value[k], pieces.value[k + 1]), 1024) - smallest, 1024);
-        const mpf_class above(largest - mpf_class(std::max(pieces.value[k], pieces.value[k + 1]), 1024), 1024);
-        worst = std::max({worst, below.get_d(), above.get_d()});
+    for (const auto& [low, high] : {std::pair{0.0, 1.0}, std::pair{0.0, 0.5}, std::pair{0.5, 1.0}}) {
+        const MonotonePieces<double> pieces = pieces_of(f, low, high);
+        for (int k = 0; k < 3; ++k) {
+            const auto [smallest, largest] = exact.range(mpf_class(pieces.time[k], 1024), mpf_class(pieces.time[k + 1], 1024));
+            const mpf_class below(mpf_class(std::min(pieces.value[k], pieces.value[k + 1]), 1024) - smallest, 1024);
+            const mpf_class above(largest - mpf_class(std::max(pieces.value[k], pieces.value[k + 1]), 1024), 1024);
+            worst = std::max({worst, below.get_d(), above.get_d()});
+        }
     }
     return worst / (ErrorBounds::monotone_piece() * largest_coefficient(f));
 }

@@ -1,0 +1,60 @@
+// From lanes to the results of a tile: what both pipelines share.
+#pragma once
+
+#include <kernel_table.hpp>
+#include <lane.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Bits of a batch of which `left` lanes are in use.
+template <class L>
+FASTCCD_INLINE unsigned lanes_in_use(std::size_t left)
+{
+    return left >= Lane<L>::width ? (1u << Lane<L>::width) - 1 : (1u << left) - 1;
+}
+
+/// Calls visit(i, lane) for the pairs of the lanes whose bit is set.
+template <class L, class Visit>
+FASTCCD_INLINE void for_each_pair(L pair, unsigned lanes, Visit visit)
+{
+    alignas(64) double pairs[Lane<L>::width];
+    Lane<L>::store(pairs, pair);
+    for (; lanes != 0; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        visit(static_cast<unsigned>(pairs[lane]), lane);
+    }
+}
+
+FASTCCD_INLINE void set_bit(std::uint64_t* words, unsigned i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
+
+/// Leaves the pairs of these lanes to the certified search.
+template <class L>
+FASTCCD_INLINE void leave_undecided(TileScratch& scratch, L pair, unsigned lanes)
+{
+    for_each_pair(pair, lanes, [&](unsigned i, int) FASTCCD_INLINE_LAMBDA { set_bit(scratch.is_undecided, i); });
+}
+
+/// Nothing reported, nothing undecided, all times +infinity.
+template <class L>
+FASTCCD_INLINE void clear_results(TileScratch& scratch, std::size_t count)
+{
+    for (std::size_t i = 0; i < count; i += Lane<L>::width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+    __builtin_memset(scratch.roots, 0, count);
+    __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
+    __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
+}
+
+/// Fills in `reported` from the times.
+template <class L>
+FASTCCD_INLINE void mark_reported(TileScratch& scratch, std::size_t count)
+{
+    const L infinity = broadcast<L>(__builtin_inf());
+    for (std::size_t i = 0; i < count; i += 64) {
+        std::uint64_t word = 0;
+        for (unsigned k = 0; k < 64; k += Lane<L>::width)
+            word |= std::uint64_t{Lane<L>::bits(less(Lane<L>::load(&scratch.time[i + k]), infinity))} << k;
+        scratch.reported[i / 64] = count - i < 64 ? word & ((std::uint64_t{1} << (count - i)) - 1) : word;
+    }
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

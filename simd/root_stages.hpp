@@ -1,0 +1,262 @@
+// The last stages of the pipeline: from pairs without certificates to the roots of their cubics, and from roots to contacts.
+#pragma once
+
+#include <area_inclusion.hpp>
+#include <householder.hpp>
+#include <lane_results.hpp>
+#include <projected_inclusion.hpp>
+#include <records.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+template <PairKind kind, class L>
+class RootStages {
+public:
+    FASTCCD_INLINE RootStages(const SearchParameters& search_parameters, TileScratch& s) : parameters{search_parameters}, scratch{s}
+    {
+        scratch.candidates.size = scratch.stubborn.size = 0;
+    }
+
+    /// Another batch of candidates.
+    FASTCCD_INLINE void take(const PairRecord<L>& record, unsigned lanes)
+    {
+        push(scratch.candidates, lanes, record);
+        if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
+    }
+
+    /// Empties all queues.
+    void finish()
+    {
+        find_roots(true);
+        refine(true);
+    }
+
+private:
+    static constexpr unsigned width = Lane<L>::width;
+
+    const SearchParameters& parameters;
+    TileScratch& scratch;
+
+    /// The pieces in which the cubic changes sign, and a few steps towards the root of each. Every step is done for all batches
+    /// before the next one, so that divisions and roots of many batches are under way at once.
+    void find_roots(bool all)
+    {
+        const unsigned size = scratch.candidates.size, end = all ? size : size / width * width;
+        for (unsigned i = 0; i < end; i += width) find_pieces(i, lanes_in_use<L>(size - i));
+        for (unsigned piece = 0; piece < 3; ++piece) {
+            unsigned any = 0;
+            for (unsigned i = 0; i < end; i += width) {
+                if (scratch.search.pieces[piece][i / width] == 0) continue;
+                any = 1;
+                if (piece > 0) next_piece(i);
+                start_in_middle(i);
+            }
+            if (any == 0) break;
+            for (int step = 0; step < quick_steps; ++step)
+                for (unsigned i = 0; i < end; i += width)
+                    if (scratch.search.pieces[piece][i / width] != 0) approach_root(i);
+            for (unsigned i = 0; i < end; i += width)
+                if (const unsigned lanes = scratch.search.pieces[piece][i / width]; lanes != 0) decide_quickly(i, lanes);
+        }
+        drop_front(scratch.candidates, end);
+    }
+
+    FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
+    {
+        RootSearch& search = scratch.search;
+        PairRecord<L> record;
+        read(scratch.candidates, i, record);
+        compute_pair_again(record);
+        const Window<L> window = window_of(record.pair);
+        const MonotonePieces<L> pieces = monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds,
+                                                         parameters.leaf_width, window.low, window.high);
+        const unsigned certain =
+            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), record.scale.volume));
+        if (certain != lanes) leave_undecided(scratch, record.pair, lanes & ~certain);
+
+        const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
+        const LaneMask<L> in_second = opposite_signs(pieces.value[1], pieces.value[2]);
+        const LaneMask<L> in_third = opposite_signs(pieces.value[2], pieces.value[3]);
+        // A second root lies in the second piece (after one in the first) or in the third.
+        const LaneMask<L> first_two = in_first & in_second;
+        search.pieces[0][i / width] = certain & Lane<L>::bits(in_first | in_second | in_third);
+        search.pieces[1][i / width] = certain & Lane<L>::bits(first_two | (in_third & (in_first | in_second)));
+        search.pieces[2][i / width] = certain & Lane<L>::bits(first_two & in_third);
+
+        store(search.scale, i, record.scale);
+        store(search.f, i, pieces.f);
+        Lane<L>::store(&search.threshold[i], pieces.threshold);
+        Lane<L>::store(&search.end[i], window.high);
+        Lane<L>::store(&search.low[i], select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2])));
+        Lane<L>::store(&search.high[i], select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3])));
+        Lane<L>::store(&search.later_low[i], select<L>(first_two, pieces.time[1], pieces.time[2]));
+        Lane<L>::store(&search.later_high[i], select<L>(first_two, pieces.time[2], pieces.time[3]));
+    }
+
+    FASTCCD_INLINE void next_piece(unsigned i)
+    {
+        RootSearch& search = scratch.search;
+        const L later_high = Lane<L>::load(&search.later_high[i]);
+        Lane<L>::store(&search.low[i], Lane<L>::load(&search.later_low[i]));
+        Lane<L>::store(&search.high[i], later_high);
+        Lane<L>::store(&search.later_low[i], later_high);
+        Lane<L>::store(&search.later_high[i], Lane<L>::load(&search.end[i]));
+    }
+
+    FASTCCD_INLINE void start_in_middle(unsigned i)
+    {
+        RootSearch& search = scratch.search;
+        const L sum = Lane<L>::load(&search.low[i]) + Lane<L>::load(&search.high[i]);
+        Lane<L>::store(&search.guess[i], sum * broadcast<L>(0.5));
+    }
+
+    FASTCCD_INLINE void approach_root(unsigned i)
+    {
+        RootSearch& search = scratch.search;
+        const Bracket<L> piece{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
+        Lane<L>::store(&search.guess[i], clipped_step(load_cubic<L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
+    }
+
+    /// The sides of a bracket of half width delta around the guess, within the piece, when f certainly
+    /// changes sign between them: then the piece's only root lies inside.
+    struct RootBracket {
+        L low, high;
+        LaneMask<L> certain;
+    };
+    FASTCCD_INLINE static RootBracket bracket_root(const PairRecord<L>& root, L delta)
+    {
+        const L low = max(root.guess - delta, root.low);
+        const L high = min(root.guess + delta, root.high);
+        const L at_low = evaluate(root.f, low), at_high = evaluate(root.f, high);
+        const LaneMask<L> beyond = less(root.threshold, min(abs(at_low), abs(at_high)));
+        return {low, high, beyond & opposite_signs(at_low, at_high)};
+    }
+
+    /// A leaf of the search, and the times on either side of its centre.
+    struct Leaf {
+        L left, right, centre, half;
+        LaneMask<L> inner;  ///< Within [0, 1], and not leaf 0, which is the certified search's: it looks for a positive bound there.
+    };
+    FASTCCD_INLINE Leaf leaf_at(L time) const
+    {
+        const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+        const L w = broadcast<L>(parameters.leaf_width);
+        // floor(time / w), by adding and subtracting 2^52 (exact for 0 <= time / w <= 2^50).
+        const L scaled = time * broadcast<L>(parameters.leaf_count);
+        const L nearest = (scaled + broadcast<L>(0x1p52)) - broadcast<L>(0x1p52);
+        const L left = select<L>(less(scaled, nearest), nearest - one, nearest) * w;
+        const L right = left + w, half = broadcast<L>(0.5) * w;
+        return {left, right, left + half, half, less(zero, left) & less_equal(right, one)};
+    }
+
+    /// Decides what few steps allow, by the signs of the cubic. The piece is monotone: if it has opposite signs beyond the
+    /// threshold at both ends of the leaf, then it has a root there and none beside it, and likewise in the bracket.
+    FASTCCD_INLINE void decide_quickly(unsigned i, unsigned lanes)
+    {
+        PairRecord<L> root;
+        read(scratch.candidates, i, root);
+        root.scale = load_scales<L>(scratch.search.scale, i);
+        root.f = load_cubic<L>(scratch.search.f, i);
+        root.threshold = Lane<L>::load(&scratch.search.threshold[i]);
+        root.low = Lane<L>::load(&scratch.search.low[i]);
+        root.high = Lane<L>::load(&scratch.search.high[i]);
+        root.guess = Lane<L>::load(&scratch.search.guess[i]);
+
+        const L delta = broadcast<L>(quick_bracket);
+        const RootBracket bracket = bracket_root(root, delta);
+        const Leaf leaf = leaf_at(root.guess);
+        const L at_left = evaluate(root.f, leaf.left), at_right = evaluate(root.f, leaf.right);
+        const LaneMask<L> in_leaf = leaf.inner & less_equal(root.low, leaf.left) & less_equal(leaf.right, root.high) &
+                                    less(root.threshold, min(abs(at_left), abs(at_right))) & opposite_signs(at_left, at_right);
+        // Over the bracket with one leaf more on either side: the margin of the certified search. The leaf lies within.
+        const Inclusion<L> inclusion = projected_inclusion<kind>(
+            root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width), parameters.bounds);
+        const unsigned contact = lanes & Lane<L>::bits(in_leaf & inclusion.present);
+        if (contact != 0) record_contacts(root.pair, leaf.left, contact);
+        const unsigned others = lanes & ~contact & ~Lane<L>::bits(bracket.certain & inclusion.absent);
+        if (others == 0) return;
+        push(scratch.stubborn, others, root);
+        if (scratch.stubborn.size >= RootQueue::drain_at) refine(false);
+    }
+
+    /// Roots that need more: as many steps as any takes, one step of all batches after the other; then decides with tighter bounds.
+    void refine(bool all)
+    {
+        const unsigned size = scratch.stubborn.size, end = all ? size : size / width * width;
+        for (unsigned i = 0; i < end; i += width) prepare_refinement(i);
+        for (int step = 0; step < most_steps; ++step)
+            for (unsigned i = 0; i < end; i += width) refine_root(i);
+        for (unsigned i = 0; i < end; i += width) decide(i, lanes_in_use<L>(size - i));
+        drop_front(scratch.stubborn, end);
+    }
+
+    FASTCCD_INLINE void prepare_refinement(unsigned i)
+    {
+        Refinement& refinement = scratch.refinement;
+        PairRecord<L> root;
+        read(scratch.stubborn, i, root);
+        root.f = power_basis(bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1))));
+        store(refinement.f, i, root.f);
+        Lane<L>::store(&refinement.slope[i], evaluate(root.f, root.high) - evaluate(root.f, root.low));
+        Lane<L>::store(&refinement.low[i], root.low);
+        Lane<L>::store(&refinement.high[i], root.high);
+        Lane<L>::store(&refinement.guess[i], root.guess);
+    }
+
+    FASTCCD_INLINE void refine_root(unsigned i)
+    {
+        Refinement& refinement = scratch.refinement;
+        Bracket<L> bracket{Lane<L>::load(&refinement.low[i]), Lane<L>::load(&refinement.high[i])};
+        const LaneMask<L> rising = less(broadcast<L>(0.0), Lane<L>::load(&refinement.slope[i]));
+        const L guess = bracketed_step(load_cubic<L>(refinement.f, i), rising, bracket, Lane<L>::load(&refinement.guess[i]));
+        Lane<L>::store(&refinement.low[i], bracket.low);
+        Lane<L>::store(&refinement.high[i], bracket.high);
+        Lane<L>::store(&refinement.guess[i], guess);
+    }
+
+    /// The leaf that holds the refined root, proofs on both sides of it, and inclusion within it.
+    FASTCCD_INLINE void decide(unsigned i, unsigned lanes)
+    {
+        PairRecord<L> root;
+        read(scratch.stubborn, i, root);
+        root.guess = Lane<L>::load(&scratch.refinement.guess[i]);
+        const Cubic<L> f = compute_again(root, parameters);
+        const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+        const L w = broadcast<L>(parameters.leaf_width);
+        const RootBracket bracket = bracket_root(root, broadcast<L>(fine_bracket));
+        const Leaf leaf = leaf_at(root.guess);
+
+        // f has one strict sign from the bracket's low side (and a leaf before it) to the leaf, the other
+        // from the leaf to the bracket's high side (and a leaf after it).
+        const L before = max(min(bracket.low, leaf.left) - w, zero), after = min(max(bracket.high, leaf.right) + w, one);
+        const Cubic<L> f_before = on_interval(f, before, leaf.left), f_after = on_interval(f, leaf.right, after);
+        const L bound = broadcast<L>(parameters.bounds.cubic_on_interval_lanes()) * root.scale.volume;
+        const LaneMask<L> crosses =
+            leaf.inner & bracket.certain &
+            ((less(bound, smallest(f_before)) & less(largest(f_after), zero - bound)) |
+             (less(largest(f_before), zero - bound) & less(bound, smallest(f_after))));
+
+        const Inclusion<L> inclusion =
+            projected_inclusion<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds);
+        const unsigned crossing = lanes & Lane<L>::bits(crosses);
+        const unsigned contact = crossing & Lane<L>::bits(inclusion.present);
+        unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
+        if ((undecided & crossing) != 0)
+            undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds)));
+        if (contact != 0) record_contacts(root.pair, leaf.left, contact);
+        if (undecided != 0) leave_undecided(scratch, root.pair, undecided);
+    }
+
+    /// `reported` is left to mark_reported: bits of one word would wait for one another here.
+    FASTCCD_INLINE void record_contacts(L pair, L left, unsigned contact)
+    {
+        alignas(64) double lefts[width];
+        Lane<L>::store(lefts, left);
+        for_each_pair(pair, contact, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
+            scratch.time[i] = lefts[lane] < scratch.time[i] ? lefts[lane] : scratch.time[i];
+            ++scratch.roots[i];
+        });
+    }
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
