@@ -142,8 +142,8 @@ FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pair
                                            block + (12 + 3 * point) * block_pairs + lane, block_pairs);
 }
 
-/// Asks for packed pairs ahead of the block being read. Only where blocks are read: the later stages asked as well while tiles
-/// were smaller, which is slower now (bench/README.md). The loop is not to be unrolled: lines are to be asked for slowly.
+/// Asks for packed pairs ahead of the block being read, and nowhere else: in the later stages it only takes time. The loop is
+/// not unrolled, because lines are to be asked for slowly: in bursts they keep the core from going on (bench/README.md).
 class Prefetcher {
 public:
     FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first)
@@ -176,8 +176,10 @@ public:
         } else if (end_ != nullptr) {
             const auto* const at = static_cast<const std::byte*>(address);
             const std::byte* const until = static_cast<std::size_t>(end_ - at) > bytes_ahead ? at + bytes_ahead : end_;
+            const std::byte* next = next_;
 #pragma GCC unroll 1
-            for (; next_ < until; next_ += line) __builtin_prefetch(next_);
+            for (; next < until; next += line) __builtin_prefetch(next);
+            next_ = next;
         }
     }
 

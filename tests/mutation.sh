@@ -114,7 +114,8 @@ mutant 'outside one side is outside (vertex-face)' $certificates 's/(max\(p\.sma
 mutant 'one end point on one side (edge-edge)' $certificates 's/min\(p\.smallest, t\.smallest\)/max(p.smallest, t.smallest)/' certificates_test
 
 halves=kernels/halves_certificate.hpp
-mutant 'apart on one half is apart' $halves 's/return first & second/return first | second/' certificates_test
+mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.second/apart.first | apart.second/' same_bits_test
+mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
 mutant 'halved edge functions by sign alone' $halves 's/bound = broadcast<L>\(bounds\.quadratic\) \* area/bound = broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test
 mutant 'halved sums by sign alone' $halves 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test stress
