@@ -119,31 +119,27 @@ FASTCCD_INLINE void read(const Queue& queue, unsigned first, Record<L>& record)
 }
 
 template <std::size_t size, class L>
+FASTCCD_INLINE void store_four(double (&rows)[4][size], unsigned i, L a, L b, L c, L d)
+{
+    Lane<L>::store(&rows[0][i], a);
+    Lane<L>::store(&rows[1][i], b);
+    Lane<L>::store(&rows[2][i], c);
+    Lane<L>::store(&rows[3][i], d);
+}
+template <std::size_t size, class L>
 FASTCCD_INLINE void store(double (&rows)[4][size], unsigned i, const PowerCubic<L>& f)
 {
-    Lane<L>::store(&rows[0][i], f.c0);
-    Lane<L>::store(&rows[1][i], f.c1);
-    Lane<L>::store(&rows[2][i], f.c2);
-    Lane<L>::store(&rows[3][i], f.c3);
+    store_four(rows, i, f.c0, f.c1, f.c2, f.c3);
 }
-
-template <class L, std::size_t size>
-FASTCCD_INLINE PowerCubic<L> load_cubic(const double (&rows)[4][size], unsigned i)
-{
-    return {Lane<L>::load(&rows[0][i]), Lane<L>::load(&rows[1][i]), Lane<L>::load(&rows[2][i]), Lane<L>::load(&rows[3][i])};
-}
-
 template <std::size_t size, class L>
 FASTCCD_INLINE void store(double (&rows)[4][size], unsigned i, const Scales<L>& scale)
 {
-    Lane<L>::store(&rows[0][i], scale.yz);
-    Lane<L>::store(&rows[1][i], scale.zx);
-    Lane<L>::store(&rows[2][i], scale.xy);
-    Lane<L>::store(&rows[3][i], scale.volume);
+    store_four(rows, i, scale.yz, scale.zx, scale.xy, scale.volume);
 }
 
-template <class L, std::size_t size>
-FASTCCD_INLINE Scales<L> load_scales(const double (&rows)[4][size], unsigned i)
+/// A PowerCubic or Scales, in the order in which they were stored.
+template <template <class> class Record, class L, std::size_t size>
+FASTCCD_INLINE Record<L> load(const double (&rows)[4][size], unsigned i)
 {
     return {Lane<L>::load(&rows[0][i]), Lane<L>::load(&rows[1][i]), Lane<L>::load(&rows[2][i]), Lane<L>::load(&rows[3][i])};
 }

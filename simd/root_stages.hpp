@@ -114,7 +114,7 @@ private:
     {
         RootSearch& search = scratch.search;
         const Bracket<L> piece{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
-        Lane<L>::store(&search.guess[i], clipped_step(load_cubic<L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
+        Lane<L>::store(&search.guess[i], clipped_step(load<PowerCubic, L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
     }
 
     /// The sides of a bracket of half width delta around the guess, within the piece, when f certainly
@@ -155,8 +155,8 @@ private:
     {
         PairRecord<L> root;
         read(scratch.candidates, i, root);
-        root.scale = load_scales<L>(scratch.search.scale, i);
-        root.f = load_cubic<L>(scratch.search.f, i);
+        root.scale = load<Scales, L>(scratch.search.scale, i);
+        root.f = load<PowerCubic, L>(scratch.search.f, i);
         root.threshold = Lane<L>::load(&scratch.search.threshold[i]);
         root.low = Lane<L>::load(&scratch.search.low[i]);
         root.high = Lane<L>::load(&scratch.search.high[i]);
@@ -208,7 +208,7 @@ private:
         Refinement& refinement = scratch.refinement;
         Bracket<L> bracket{Lane<L>::load(&refinement.low[i]), Lane<L>::load(&refinement.high[i])};
         const LaneMask<L> rising = less(broadcast<L>(0.0), Lane<L>::load(&refinement.slope[i]));
-        const L guess = bracketed_step(load_cubic<L>(refinement.f, i), rising, bracket, Lane<L>::load(&refinement.guess[i]));
+        const L guess = bracketed_step(load<PowerCubic, L>(refinement.f, i), rising, bracket, Lane<L>::load(&refinement.guess[i]));
         Lane<L>::store(&refinement.low[i], bracket.low);
         Lane<L>::store(&refinement.high[i], bracket.high);
         Lane<L>::store(&refinement.guess[i], guess);

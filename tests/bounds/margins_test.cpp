@@ -182,35 +182,43 @@ TEST(Margins, EarlyCubic)
     }, ordinary_shifts, effort);
 }
 
+/// What lanes see of edge functions, `seen(start, twice_middle, end)` of those of r, against the search on `leaf`: r1 x r2, or (`sum`) the
+/// fourth of an edge-edge pair, which the search has from vectors to x1. `multiple`: of a coefficient, in what is compared with `bound`.
+template <class Seen>
+double edge_function_margin(const Input& in, bool sum, const Computed& c, const portable::RelativeMotion<double>& r, const Part& leaf,
+                            Seen seen, double multiple, double bound)
+{
+    Input origin = in;
+    for (std::size_t axis = 0; sum && axis < 3; ++axis) {
+        std::swap(origin.x[axis], origin.x[3 + axis]);
+        std::swap(origin.x[12 + axis], origin.x[15 + axis]);
+    }
+    const Computed d{origin};
+    const auto lanes = sum ? portable::subtract_then_add(portable::cross_product(r, 1, 2), portable::cross_product(r, 0, 2),
+                                                         portable::cross_product(r, 0, 1))
+                           : portable::cross_product(r, 0, 1);
+    const auto search = sum ? portable::cross_product(d.r, 1, 2) : portable::cross_product(c.r, 0, 1);
+    double worst = -1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Quadratic<double> in_lanes =
+            seen(component(lanes.start, axis), component(lanes.twice_middle, axis), component(lanes.end, axis));
+        const Quadratic<double> local = component_on(search, axis, leaf);
+        const double margin = std::max(portable::smallest(in_lanes) - portable::smallest(local),
+                                       portable::largest(local) - portable::largest(in_lanes));
+        const double search_bound = d.bounds.quadratic_on_interval() * area_of(d.scale, axis);
+        worst = std::max(worst, multiple * (margin + search_bound) / (bound * area_of(c.scale, axis)));
+    }
+    return worst;
+}
+
 TEST(Margins, EarlyEdgeFunctions)
 {
     const auto ratio = [](const Input& in, bool sum) {
         const Computed c{in};
-        Input origin = in;
-        for (std::size_t axis = 0; sum && axis < 3; ++axis) {
-            std::swap(origin.x[axis], origin.x[3 + axis]);
-            std::swap(origin.x[12 + axis], origin.x[15 + axis]);
-        }
-        const Computed d{origin};
-        const auto r = until(c.r, in.b);
-        const auto lanes = sum ? portable::subtract_then_add(portable::cross_product(r, 1, 2), portable::cross_product(r, 0, 2),
-                                                             portable::cross_product(r, 0, 1))
-                               : portable::cross_product(r, 0, 1);
-        const auto search = sum ? portable::cross_product(d.r, 1, 2) : portable::cross_product(c.r, 0, 1);
-        const Part leaf = part_of(0.0, in.b, in);
-        double worst = -1;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double start = component(lanes.start, axis), middle = 0.5 * component(lanes.twice_middle, axis),
-                         end = component(lanes.end, axis);
-            const Quadratic<double> local = component_on(search, axis, leaf);
-            const double margin = std::max(std::min({start, middle, end}) - portable::smallest(local),
-                                           portable::largest(local) - std::max({start, middle, end}));
-            const double search_bound = d.bounds.quadratic_on_interval() * area_of(d.scale, axis);
-            const auto early = c.bounds.early();
-            worst = std::max(worst, 2 * (margin + search_bound) /
-                                        ((sum ? early.quadratic_sum : early.quadratic) * area_of(c.scale, axis)));
-        }
-        return worst;
+        const CertificateBounds early = c.bounds.early();
+        return edge_function_margin(in, sum, c, until(c.r, in.b), part_of(0.0, in.b, in), [](double start, double twice_middle, double end) {
+            return Quadratic<double>{start, 0.5 * twice_middle, end};
+        }, 2, sum ? early.quadratic_sum : early.quadratic);
     };
     expect_bound("early().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
     expect_bound("early().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
@@ -244,32 +252,13 @@ TEST(Margins, HalvedEdgeFunctions)
 {
     const auto ratio = [](const Input& in, bool sum) {
         const Computed c{in};
-        Input origin = in;
-        for (std::size_t axis = 0; sum && axis < 3; ++axis) {
-            std::swap(origin.x[axis], origin.x[3 + axis]);
-            std::swap(origin.x[12 + axis], origin.x[15 + axis]);
-        }
-        const Computed d{origin};
         const Half half{in};
-        const auto lanes = sum ? portable::subtract_then_add(portable::cross_product(c.r, 1, 2), portable::cross_product(c.r, 0, 2),
-                                                             portable::cross_product(c.r, 0, 1))
-                               : portable::cross_product(c.r, 0, 1);
-        const auto search = sum ? portable::cross_product(d.r, 1, 2) : portable::cross_product(c.r, 0, 1);
-        double worst = -1;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto f = portable::halved(component(lanes.start, axis), component(lanes.twice_middle, axis),
-                                            component(lanes.end, axis));
-            const Quadratic<double> seen = half.second ? Quadratic<double>{f.middle / 4, f.second / 2, f.end}
-                                                       : Quadratic<double>{f.start, f.first / 2, f.middle / 4};
-            const Quadratic<double> local = component_on(search, axis, half.leaf);
-            const double margin = std::max(portable::smallest(seen) - portable::smallest(local),
-                                           portable::largest(local) - portable::largest(seen));
-            const double search_bound = d.bounds.quadratic_on_interval() * area_of(d.scale, axis);
-            const auto halves = c.bounds.halves();
-            worst = std::max(worst, 4 * (margin + search_bound) /
-                                        ((sum ? halves.quadratic_sum : halves.quadratic) * area_of(c.scale, axis)));
-        }
-        return worst;
+        const CertificateBounds halves = c.bounds.halves();
+        return edge_function_margin(in, sum, c, c.r, half.leaf, [&](double start, double twice_middle, double end) {
+            const auto f = portable::halved(start, twice_middle, end);
+            return half.second ? Quadratic<double>{f.middle / 4, f.second / 2, f.end}
+                               : Quadratic<double>{f.start, f.first / 2, f.middle / 4};
+        }, 4, sum ? halves.quadratic_sum : halves.quadratic);
     };
     expect_bound("halves().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
     expect_bound("halves().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
