@@ -142,7 +142,10 @@ private:
     /// Certificates that need more than screening has computed. Those on both halves include the area certificate on the whole.
     FASTCCD_INLINE void examine(PairRecord<L>& record, unsigned lanes)
     {
-        if (cutoff < 1.0) lanes &= ~Lane<L>::bits(apart_until_cutoff(record));
+        if (cutoff < 1.0) {
+            lanes &= ~Lane<L>::bits(apart_until_cutoff(record));
+            if (lanes == 0) return;  // as for most batches, once a contact is known
+        }
         const auto apart = visit_edge_functions<kind>(
             record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
                 return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, halves);
