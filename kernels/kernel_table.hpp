@@ -51,7 +51,7 @@ struct RootSearch {
     unsigned pieces[3][PairQueue::capacity];
 };
 
-/// What refinement works on, next to the rows of `stubborn`.
+/// What refinement works on, next to the rows of `slow`.
 struct Refinement {
     alignas(64) double f[4][RootQueue::capacity];
     alignas(64) double low[RootQueue::capacity], high[RootQueue::capacity];  ///< A bracket that closes around the root.
@@ -81,7 +81,7 @@ struct TileScratch {
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.
     RootSearch search;
-    RootQueue stubborn;      ///< Roots that few steps do not decide.
+    RootQueue slow;          ///< Roots that few steps do not decide.
     Refinement refinement;
     SeparationQueue separating;  ///< With a minimum separation: pairs that no coordinate axis keeps apart.
     AdvancingQueue advancing;    ///< Pairs that the first look does not.

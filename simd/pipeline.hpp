@@ -4,7 +4,7 @@
 //                     |                                     on both halves                        Householder steps, leaf,
 //                     v                                           |                               inclusion
 //                   apart                                         v                                |             |
-//                                                               apart                      contact or apart  [stubborn]
+//                                                               apart                      contact or apart      [slow]
 //                                                                                                                |
 //                          certified search  <- undecided, here and above -  more steps, tighter bounds <--------+
 //                                                                                  |

@@ -14,7 +14,7 @@ class RootStages {
 public:
     FASTCCD_INLINE RootStages(const SearchParameters& search_parameters, TileScratch& s) : parameters{search_parameters}, scratch{s}
     {
-        scratch.candidates.size = scratch.stubborn.size = 0;
+        scratch.candidates.size = scratch.slow.size = 0;
     }
 
     /// Another batch of candidates.
@@ -175,26 +175,26 @@ private:
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
         const unsigned others = lanes & ~contact & ~Lane<L>::bits(bracket.certain & inclusion.absent);
         if (others == 0) return;
-        push(scratch.stubborn, others, root);
-        if (scratch.stubborn.size >= RootQueue::drain_at) refine(false);
+        push(scratch.slow, others, root);
+        if (scratch.slow.size >= RootQueue::drain_at) refine(false);
     }
 
     /// Roots that need more: as many steps as any takes, one step of all batches after the other; then decides with tighter bounds.
     void refine(bool all)
     {
-        const unsigned size = scratch.stubborn.size, end = all ? size : size / width * width;
+        const unsigned size = scratch.slow.size, end = all ? size : size / width * width;
         for (unsigned i = 0; i < end; i += width) prepare_refinement(i);
         for (int step = 0; step < most_steps; ++step)
             for (unsigned i = 0; i < end; i += width) refine_root(i);
         for (unsigned i = 0; i < end; i += width) decide(i, lanes_in_use<L>(size - i));
-        drop_front(scratch.stubborn, end);
+        drop_front(scratch.slow, end);
     }
 
     FASTCCD_INLINE void prepare_refinement(unsigned i)
     {
         Refinement& refinement = scratch.refinement;
         PairRecord<L> root;
-        read(scratch.stubborn, i, root);
+        read(scratch.slow, i, root);
         root.f = power_basis(bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1))));
         store(refinement.f, i, root.f);
         Lane<L>::store(&refinement.slope[i], evaluate(root.f, root.high) - evaluate(root.f, root.low));
@@ -218,7 +218,7 @@ private:
     FASTCCD_INLINE void decide(unsigned i, unsigned lanes)
     {
         PairRecord<L> root;
-        read(scratch.stubborn, i, root);
+        read(scratch.slow, i, root);
         root.guess = Lane<L>::load(&scratch.refinement.guess[i]);
         const Cubic<L> f = compute_again(root, parameters);
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
