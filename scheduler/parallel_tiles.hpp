@@ -29,8 +29,9 @@ static_assert(sizeof(TileWorker) < 512 * 1024);
 /// Of a call with `size` pairs. Few pairs are cut into smaller tiles, so that every thread gets its share of them.
 constexpr std::size_t pairs_per_tile(std::size_t size)
 {
-    constexpr std::size_t least_tiles = 16;
-    return size >= least_tiles * tile_pairs ? tile_pairs : tile_pairs / 4;
+    constexpr std::size_t least_tiles = 16, small_tile = tile_pairs / 4;
+    static_assert(small_tile % group_pairs == 0);
+    return size >= least_tiles * tile_pairs ? tile_pairs : small_tile;
 }
 
 /// Runs every tile of the job up to a cutoff, cutoff(first) (see TileRequest; negative: the tile is left out), and

@@ -61,6 +61,7 @@ private:
         drop_front(scratch.candidates, end);
     }
 
+    /// In the window alone: no leaf straddles the middle of the step, where it may end, and the other half has a certificate.
     FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
     {
         RootSearch& search = scratch.search;

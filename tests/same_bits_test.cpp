@@ -105,15 +105,17 @@ TEST(SameBits, Layouts)
         const Answer expected = reference(kind, interleaved(pairs), 1e-9);
         const PairBuffer buffer = to_buffer(pairs);
 
-        // 24 columns, and the same backwards with a negative stride.
-        std::vector<double> columns(pairs.size() * pair_coordinates), backwards(columns.size());
-        std::array<const double*, pair_coordinates> forward{}, reversed{};
+        // 24 columns, and the same backwards with a negative stride; 8 columns of x y z triples.
+        std::vector<double> columns(pairs.size() * pair_coordinates), backwards(columns.size()), points(columns.size());
+        std::array<const double*, pair_coordinates> forward{}, reversed{}, triples{};
         for (std::size_t c = 0; c < pair_coordinates; ++c) {
             forward[c] = &columns[c * pairs.size()];
             reversed[c] = &backwards[(c + 1) * pairs.size() - 1];
+            triples[c] = &points[c / 3 * 3 * pairs.size() + c % 3];
             for (std::size_t i = 0; i < pairs.size(); ++i) {
                 columns[c * pairs.size() + i] = pairs[i][c / 3][c % 3];
                 backwards[(c + 1) * pairs.size() - 1 - i] = pairs[i][c / 3][c % 3];
+                points[3 * (c / 3 * pairs.size() + i) + c % 3] = pairs[i][c / 3][c % 3];
             }
         }
         for (const Isa isa : isas_to_test()) {
@@ -126,6 +128,7 @@ TEST(SameBits, Layouts)
             expect(interleaved(pairs), "interleaved");
             expect(PairView::strided(forward, 1, pairs.size()), "strided");
             expect(PairView::strided(reversed, -1, pairs.size()), "strided backwards");
+            expect(PairView::strided(triples, 3, pairs.size()), "strided triples");
         }
     }
 }
