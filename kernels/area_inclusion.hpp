@@ -40,25 +40,37 @@ FASTCCD_INLINE MotionBounds<L> motion_bounds(const RelativeMotion<L>& r)
                                 subtract(r.end[2], r.start[2])))};
 }
 
+/// For a pair with these bounds of its motion and this rounding of areas (area_rounding).
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, L centre, L delta,
-                                            const ErrorBounds& bounds)
+FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const MotionBounds<L>& motion_bound, L rounding, L centre,
+                                            L delta)
 {
-    const auto [edge, speed] = motion_bounds(r);
     // The roundings of squares, sums, roots and products below, a dozen u, rounded up; what the differences
     // themselves are off by is in bounds.area().
     const L inflate = broadcast<L>(1.0 + 0x1p-30);
     // 2 sum E = 2 * 4 * (delta C1 C2 + delta^2 C2^2 / 2)
-    const L motion = delta * speed;
-    const L change = broadcast<L>(8.0) * motion * (edge + broadcast<L>(0.5) * motion) * inflate;
+    const L motion = delta * motion_bound.speed;
+    const L change = broadcast<L>(8.0) * motion * (motion_bound.edge + broadcast<L>(0.5) * motion) * inflate;
 
     const Vector3<L> r1 = position(r, 0, centre), r2 = position(r, 1, centre), r3 = position(r, 2, centre);
     const Vector3<L> p = cross(r1, r2), q = cross(r2, r3), t = cross(r3, r1);
     const L whole = norm(add(add(q, t), p));
-    const L rounding = broadcast<L>(bounds.area()) * ((scale.yz + scale.zx) + scale.xy);
     const L excess = kind == PairKind::vertex_face ? ((norm(p) + norm(q)) + norm(t)) - whole
                                                    : abs(((norm(p) + norm(t)) - norm(q)) - whole);
     return less(change + rounding, excess);
+}
+
+template <class L>
+FASTCCD_INLINE L area_rounding(const Scales<L>& scale, const ErrorBounds& bounds)
+{
+    return broadcast<L>(bounds.area()) * ((scale.yz + scale.zx) + scale.xy);
+}
+
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, L centre, L delta,
+                                            const ErrorBounds& bounds)
+{
+    return area_certificate<kind>(r, motion_bounds(r), area_rounding(scale, bounds), centre, delta);
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -107,21 +107,22 @@ struct ErrorBounds {
         return cubic_on_interval() + (2 * cubic_blossom_levels + slack) * u;
     }
 
-    /// Bounds for certificates on [0, c] alone (earliest contact), by which lanes may conclude that the certified
-    /// search finds every leaf in [0, c] apart. The end of the motion is interpolated: its components err by rho + 3
-    /// times u X where X bounds both ends. Added is what the search's coefficients err by and its bound, together
-    /// twice its bound; for the sum of three cross products the search's bound refers to at most four times the area.
-    [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds early() const
+    /// Bounds for certificates on a part [a, b] alone (earliest contact, quarters), by which lanes may conclude that the certified
+    /// search finds every interval in [a, b] apart. The ends of the motion are interpolated: their components err by rho + 3
+    /// times u X where X bounds both ends of the whole motion. Added is what the search's coefficients err by and its bound, together
+    /// twice its bound; for the sum of three cross products the search's bound refers to at most four times the area. A gap errs in the lanes as it does
+    /// in the search, by linear_on_interval().
+    [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds on_part() const
     {
         const double end_rho = rho + 3;
         // Coefficients 3 f1 and the doubled middle ones are compared, so the search's share counts 3 and 2 times.
         return {(54 * end_rho + 114 + slack) * u + 3 * 2 * cubic_on_interval(),
                 (8 * end_rho + 12 + slack) * u + 2 * 2 * quadratic_on_interval(),
-                (24 * end_rho + 56 + slack) * u + 2 * 2 * 4 * quadratic_on_interval(), linear()};
+                (24 * end_rho + 56 + slack) * u + 2 * 2 * 4 * quadratic_on_interval(), 3 * linear_on_interval()};
     }
 
     /// Bounds for certificates on both halves of the interval (halves_certificate.hpp), each for the largest multiple of
-    /// a coefficient there and so more than enough for the others. Added, as in early(), is twice the search's bound.
+    /// a coefficient there and so more than enough for the others. Added, as in on_part(), is twice the search's bound.
     /// Quadratic: twice an inner coefficient errs by (4 rho + 4) + (8 rho + 12) / 2 + 4, its size; 4 times the value in
     /// the middle is a sum of two such, of size 8: 16 rho + 36. Sum of three: (12 rho + 22) + (24 rho + 56) / 2 + 12, and
     /// 48 rho + 148. Cubic: 3 f0 errs by 3 (18 rho + 28) + 18, 3 f0 + 3 f1 by 108 rho + 252, 3 f1 + 3 f2 by

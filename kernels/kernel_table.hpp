@@ -7,6 +7,7 @@
 
 #include <fastccd/options.hpp>
 #include <fastccd/pair_view.hpp>
+#include <pair_coefficients.hpp>
 #include <pair_source.hpp>
 #include <search_parameters.hpp>
 
@@ -115,6 +116,8 @@ struct KernelTable {
     /// Fills time, roots, reported and is_undecided of the scratch. What the lanes found of an undecided pair is to
     /// be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
+    /// For the certified search of one pair.
+    IntervalKernel intervals;
 };
 
 /// Tables in this build; null where the instruction set was not built.

@@ -24,13 +24,13 @@ bool finite(const double* coordinates)
 }
 
 template <PairKind kind>
-SearchResult search(const double* coordinates, const SearchParameters& parameters)
+SearchResult search(const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
 {
     const PairPolynomials<kind> pair{coordinates, parameters};
     SearchResult result{std::numeric_limits<double>::infinity(), Proof::none, 0, 1};
     if (pair.apart()) return result;
 
-    LeafSearch<kind> leaves{pair, parameters};
+    LeafSearch<kind> leaves{pair, parameters, lanes};
     const double first = leaves.first_contact();
     result.intervals = leaves.intervals();
     if (first > 1.0) return result;
@@ -42,11 +42,11 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
 }  // namespace
 
-SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters)
+SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
 {
     if (!finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
-    return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters)
-                                         : search<PairKind::edge_edge>(coordinates, parameters);
+    return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, lanes)
+                                         : search<PairKind::edge_edge>(coordinates, parameters, lanes);
 }
 
 }  // namespace fastccd::scalar

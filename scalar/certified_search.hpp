@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include <fastccd/options.hpp>
+#include <pair_coefficients.hpp>
 #include <search_parameters.hpp>
 
 namespace fastccd::scalar {
@@ -26,7 +27,8 @@ struct SearchResult {
     unsigned intervals;  ///< Examined on the way, for benchmarks and tests.
 };
 
-/// `coordinates`: 24, in the order of PairView.
-SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters);
+/// `coordinates`: 24, in the order of PairView. `lanes`: with a kernel for several intervals the same result, sooner.
+SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters,
+                              const IntervalKernel* lanes = nullptr);
 
 }  // namespace fastccd::scalar

@@ -5,57 +5,37 @@
 #include <limits>
 
 #include <certified_search.hpp>
-#include <pair_polynomials.hpp>
+#include <ordered_search.hpp>
 
 namespace fastccd::scalar {
-
-/// Intervals waiting to be examined, the earliest on top. Halving adds one per level, and there are at
-/// most 50 levels of leaves or 100 below one (finest_at_zero).
-class IntervalStack {
-public:
-    [[nodiscard]] bool empty() const { return size_ == 0; }
-    void push(Interval i) { data_[size_++] = i; }
-    Interval pop() { return data_[--size_]; }
-    /// Replaces the interval just popped by its halves.
-    void push_halves(Interval i)
-    {
-        const double middle = i.a + 0.5 * (i.b - i.a);
-        push({middle, i.b});
-        push({i.a, middle});
-    }
-
-private:
-    Interval data_[128];
-    unsigned size_ = 0;
-};
 
 template <PairKind kind>
 class LeafSearch {
 public:
     static constexpr double none = std::numeric_limits<double>::infinity();
 
-    LeafSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters)
-        : pair{polynomials}, parameters{search_parameters}
+    /// `lanes`: if there are any, several intervals are looked at in one go, with the same outcome.
+    LeafSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters,
+               const IntervalKernel* lanes = nullptr)
+        : pair{polynomials}, parameters{search_parameters}, search{polynomials, search_parameters, lanes}
     {
     }
 
     /// Lower bound of the first contact in [0, 1]; `none` if the pair is certainly apart.
     double first_contact()
     {
+        const Interval whole{0.0, 1.0};
+        const auto is_leaf = [&](Interval i) { return i.width() <= parameters.leaf_width; };
+        search.intervals = 1;
+        if (is_leaf(whole)) return contact_in_leaf(whole);
         IntervalStack stack;
-        stack.push({0.0, 1.0});
-        while (!stack.empty()) {
-            const Interval i = stack.pop();
+        stack.push_halves(whole);  // it has no certificate
+        while (const auto leaf = search.next_without_certificate(stack, false, most_intervals, is_leaf)) {
             // Out of intervals: what is still waiting is looked at once more, but not halved.
-            const bool out_of_intervals = intervals_++ >= most_intervals;
-            if (i.b - i.a < 1.0 && pair.apart(i)) continue;  // the whole interval has no certificate
-            if (!out_of_intervals && i.b - i.a > parameters.leaf_width) {
-                stack.push_halves(i);
-                continue;
-            }
-            const double contact = out_of_intervals ? i.a : contact_in_leaf(i);
+            const bool out_of_intervals = search.intervals > most_intervals;
+            const double contact = out_of_intervals ? leaf->a : contact_in_leaf(*leaf);
             if (contact == none) continue;
-            leaf_of_answer = i;
+            leaf_of_answer = *leaf;
             return contact;
         }
         return none;
@@ -67,18 +47,12 @@ public:
     {
         // A positive lower bound is wanted for a pair that is apart at time 0, proven contact or not.
         if (leaf.a > 0.0 && contact_proven(leaf)) return leaf.a;
-        const unsigned limit = std::min(intervals_ + most_intervals_in_leaf, most_intervals);
+        const auto is_finest = [](Interval i) { return i.width() <= std::max(i.a * finest_relative, finest_at_zero); };
+        const unsigned limit = std::min(search.intervals + most_intervals_in_leaf, most_intervals);
         IntervalStack stack;
         stack.push(leaf);
-        while (!stack.empty()) {
-            const Interval i = stack.pop();
-            ++intervals_;
-            if (pair.apart(i) || pair.apart_by_area(i)) continue;
-            if (intervals_ > limit) return i.a;
-            if (i.b - i.a <= std::max(i.a * finest_relative, finest_at_zero)) return i.a;
-            stack.push_halves(i);
-        }
-        return none;
+        const auto part = search.next_without_certificate(stack, true, limit, is_finest);
+        return part ? part->a : none;
     }
 
     /// After first_contact() has found something at s: whether there is contact for certain, in the leaf of the answer or
@@ -86,12 +60,15 @@ public:
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
         if (contact_proven(leaf_of_answer)) return Proof::leaf;
-        for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8)
-            if (contact_proven({std::max(s - reach, 0.0), std::min(s + reach, 1.0)})) return Proof::nearby;
+        for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
+            const Interval around{std::max(s - reach, 0.0), std::min(s + reach, 1.0)};
+            if (!pair.included(around)) return Proof::none;  // nor in anything wider
+            if (sign_changes(around)) return Proof::nearby;
+        }
         return Proof::none;
     }
 
-    [[nodiscard]] unsigned intervals() const { return intervals_; }
+    [[nodiscard]] unsigned intervals() const { return search.intervals; }
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;
@@ -103,19 +80,21 @@ private:
     /// Within less, rounding hides every change of sign; within more, inclusion rarely lasts.
     static constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
 
-    /// The cubic has strict opposite signs at the ends, and inclusion is strict throughout.
-    [[nodiscard]] bool contact_proven(Interval leaf) const
+    /// The cubic has strict opposite signs at the ends.
+    [[nodiscard]] bool sign_changes(Interval i) const
     {
-        const Cubic<double> f = pair.coplanarity(leaf);
+        const Cubic<double> f = pair.coplanarity(i);
         const double bound = pair.cubic_bound();
-        const bool crosses = (f.c0 > bound && f.c3 < -bound) || (f.c0 < -bound && f.c3 > bound);
-        return crosses && pair.included(leaf);
+        return (f.c0 > bound && f.c3 < -bound) || (f.c0 < -bound && f.c3 > bound);
     }
+
+    /// And inclusion is strict throughout.
+    [[nodiscard]] bool contact_proven(Interval leaf) const { return sign_changes(leaf) && pair.included(leaf); }
 
     const PairPolynomials<kind>& pair;
     const SearchParameters& parameters;
+    OrderedSearch<kind> search;
     Interval leaf_of_answer{0.0, 1.0};  ///< Where first_contact() found contact.
-    unsigned intervals_ = 0;
 };
 
 }  // namespace fastccd::scalar

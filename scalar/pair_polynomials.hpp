@@ -3,9 +3,8 @@
 
 #include <fastccd/options.hpp>
 
-#include <area_inclusion.hpp>
-#include <bernstein.hpp>
-#include <certificates.hpp>
+#include <interval_certificates.hpp>
+#include <interval_stack.hpp>
 #include <magnitudes.hpp>
 #include <scaling.hpp>
 #include <search_parameters.hpp>
@@ -14,30 +13,25 @@ namespace fastccd::scalar {
 
 using namespace FASTCCD_KERNEL_NAMESPACE;
 
-/// A time interval [a, b] of the parameter s, 0 <= a <= b <= 1.
-struct Interval {
-    double a, b;
-};
-
 template <PairKind kind>
 class PairPolynomials {
 public:
     /// `coordinates`: 24 finite ones, in the order of PairView.
     PairPolynomials(const double* coordinates, const SearchParameters& parameters)
-        : r{scaled_relative_motion(coordinates, parameters.t_max)}, bounds{parameters.bounds}
     {
+        const ErrorBounds& bounds = parameters.bounds;
         const CertificateBounds whole = bounds.certificates();
+        const RelativeMotion<double> r = scaled_relative_motion(coordinates, parameters.t_max);
+        Extents<double> extents;
         const LaneMask<double> separated = linear_certificate<kind>(r, whole, extents);
-        scale = scales(extents);
+        const Scales<double> scale = scales(extents);
         const CoplanarityCubic<double> f = coplanarity_cubic(r, cross_product(r, 0, 1));
-        cubic = bernstein(f);
-        coplanarity_bound = scalar::cubic_bound(r, bounds.cubic_on_interval() * scale.volume, bounds);
         visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
             apart_throughout = (separated | cubic_certificate(f, scale.volume, whole) |
                                 quadratic_certificate<kind>(p, q, t, s, scale, whole)).value;
-            set_edge(0, p, cross_product_magnitude(r, 0, 1), scale);
-            set_edge(1, q, cross_product_magnitude(r, 1, 2), scale);
-            set_edge(2, t, cross_product_magnitude(r, 2, 0), scale);
+            set_edge(0, p, cross_product_magnitude(r, 0, 1), scale, bounds);
+            set_edge(1, q, cross_product_magnitude(r, 1, 2), scale, bounds);
+            set_edge(2, t, cross_product_magnitude(r, 2, 0), scale, bounds);
         });
         if constexpr (kind == PairKind::edge_edge) {
             // s = (r3 - r2) x (r1 - r2) is (x2 - x1) x (x3 - x1): from differences to x1 it has a third of the
@@ -45,116 +39,74 @@ public:
             const RelativeMotion<double> from_x1 = scaled_relative_motion(coordinates, parameters.t_max, 1);
             Extents<double> extents_from_x1;
             linear_certificate<kind>(from_x1, whole, extents_from_x1);
-            set_edge(3, cross_product(from_x1, 1, 2), cross_product_magnitude(from_x1, 1, 2), scales(extents_from_x1));
+            set_edge(3, cross_product(from_x1, 1, 2), cross_product_magnitude(from_x1, 1, 2), scales(extents_from_x1), bounds);
         }
+
+        pair.kind = kind;
+        for (int i = 0; i < 3; ++i) {
+            set_vector(pair.start[i], r.start[i]);
+            set_vector(pair.end[i], r.end[i]);
+        }
+        const double per_extent = bounds.linear_on_interval();
+        set_vector(pair.gap_bound, {per_extent * extents.x, per_extent * extents.y, per_extent * extents.z});
+        const Cubic<double> cubic = bernstein(f);
+        pair.cubic[0] = cubic.c0, pair.cubic[1] = cubic.c1, pair.cubic[2] = cubic.c2, pair.cubic[3] = cubic.c3;
+        pair.cubic_bound = scalar::cubic_bound(r, bounds.cubic_on_interval() * scale.volume, bounds);
+        const MotionBounds<double> motion = motion_bounds(r);
+        pair.edge = motion.edge, pair.speed = motion.speed;
+        pair.area_rounding = area_rounding(scale, bounds);
     }
 
     /// The certificates on [0, 1], as the lanes compute them.
     [[nodiscard]] bool apart() const { return apart_throughout; }
 
     /// True if one of the three certificates proves absence on the interval.
-    [[nodiscard]] bool apart(Interval i) const
-    {
-        return never_coplanar(coplanarity(i)) || apart_in_some_projection(i) || separated_on(i);
-    }
+    [[nodiscard]] bool apart(Interval i) const { return apart_on<kind>(pair, i.a, i.b).value; }
 
-    /// Eq. 7 on the interval: its middle, with delta half its width.
-    [[nodiscard]] bool apart_by_area(Interval i) const
-    {
-        const double half = 0.5 * (i.b - i.a);
-        return area_certificate<kind>(r, scale, i.a + half, half, bounds).value;
-    }
+    /// Eq. 7 on the interval.
+    [[nodiscard]] bool apart_by_area(Interval i) const { return apart_by_area_on<kind>(pair, i.a, i.b).value; }
 
     /// Bernstein coefficients of the coplanarity cubic on the interval, each within cubic_bound().
-    [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return on_interval(cubic, i.a, i.b); }
-    [[nodiscard]] double cubic_bound() const { return coplanarity_bound; }
+    [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return coplanarity_on(pair, i.a, i.b); }
+    [[nodiscard]] double cubic_bound() const { return pair.cubic_bound; }
 
     /// True if every coplanar time of the interval is a contact: proper inclusion in some projection.
     [[nodiscard]] bool included(Interval i) const
     {
-        for (int axis = 0; axis < 3; ++axis) {
-            const int p = sign(edges[0][axis], i), q = sign(edges[1][axis], i), t = sign(edges[2][axis], i);
+        for (const auto& edges : pair.edges) {
+            const auto sign = [&](int edge) {
+                const StrictSign<double> strict = strict_sign(edges[edge], i.a, i.b);
+                return strict.positive.value ? 1 : strict.negative.value ? -1 : 0;
+            };
+            const int p = sign(0), q = sign(1), t = sign(2);
             if constexpr (kind == PairKind::vertex_face) {
                 if (p != 0 && p == q && q == t) return true;
             } else {
-                if (p * t == -1 && q * sign(edges[3][axis], i) == -1) return true;
+                if (p * t == -1 && q * sign(3) == -1) return true;
             }
         }
         return false;
     }
+
+    /// For kernels that take several intervals at a time.
+    [[nodiscard]] const PairCoefficients& coefficients() const { return pair; }
 
 private:
-    /// One component of an edge function and the bound of its coefficients on any interval.
-    struct EdgeFunction {
-        Quadratic<double> coefficients;
-        double bound;
-    };
+    static void set_vector(double (&to)[3], const Vector3<double>& v) { to[0] = v.x, to[1] = v.y, to[2] = v.z; }
 
-    void set_edge(int edge, const QuadraticVector<double>& v, const QuadraticVector<double>& m, const Scales<double>& s)
+    void set_edge(int edge, const QuadraticVector<double>& v, const QuadraticVector<double>& m, const Scales<double>& s,
+                  const ErrorBounds& bounds)
     {
         const auto component = [&](double start, double twice_middle, double end, double m0, double m1, double m2,
-                                   double area) -> EdgeFunction {
-            return {{start, 0.5 * twice_middle, end},
-                    quadratic_bound(m0, m1, m2, bounds.quadratic_on_interval() * area, bounds)};
+                                   double area) -> PairCoefficients::EdgeFunction {
+            return {start, 0.5 * twice_middle, end, quadratic_bound(m0, m1, m2, bounds.quadratic_on_interval() * area, bounds)};
         };
-        edges[edge][0] = component(v.start.x, v.twice_middle.x, v.end.x, m.start.x, m.twice_middle.x, m.end.x, s.yz);
-        edges[edge][1] = component(v.start.y, v.twice_middle.y, v.end.y, m.start.y, m.twice_middle.y, m.end.y, s.zx);
-        edges[edge][2] = component(v.start.z, v.twice_middle.z, v.end.z, m.start.z, m.twice_middle.z, m.end.z, s.xy);
+        pair.edges[0][edge] = component(v.start.x, v.twice_middle.x, v.end.x, m.start.x, m.twice_middle.x, m.end.x, s.yz);
+        pair.edges[1][edge] = component(v.start.y, v.twice_middle.y, v.end.y, m.start.y, m.twice_middle.y, m.end.y, s.zx);
+        pair.edges[2][edge] = component(v.start.z, v.twice_middle.z, v.end.z, m.start.z, m.twice_middle.z, m.end.z, s.xy);
     }
 
-    /// Strict sign throughout the interval; 0 if there is none beyond the bound.
-    static int sign(const EdgeFunction& e, Interval i)
-    {
-        const Quadratic<double> c = on_interval(e.coefficients, i.a, i.b);
-        return smallest(c) > e.bound ? 1 : largest(c) < -e.bound ? -1 : 0;
-    }
-
-    [[nodiscard]] bool never_coplanar(const Cubic<double>& f) const
-    {
-        return smallest(f) > cubic_bound() || largest(f) < -cubic_bound();
-    }
-
-    /// The strict signs decide as in apart_in_projection.
-    [[nodiscard]] bool apart_in_some_projection(Interval i) const
-    {
-        for (int axis = 0; axis < 3; ++axis) {
-            const int p = sign(edges[0][axis], i), t = sign(edges[2][axis], i);
-            if constexpr (kind == PairKind::vertex_face) {
-                const int q = sign(edges[1][axis], i);
-                if (p * q == -1 || q * t == -1 || t * p == -1) return true;
-            } else {
-                if (p * t == 1) return true;
-                if (const int q = sign(edges[1][axis], i); q != 0 && q == sign(edges[3][axis], i)) return true;
-            }
-        }
-        return false;
-    }
-
-    [[nodiscard]] bool separated_on(Interval i) const
-    {
-        Vector3<double> start[3], end[3];
-        for (int k = 0; k < 3; ++k) {
-            start[k] = position(r, k, i.a);
-            end[k] = position(r, k, i.b);
-        }
-        const auto along = [&](auto component, double extent) {
-            const auto s = axis_gap<kind, double>({component(start[0]), component(start[1]), component(start[2])});
-            const auto e = axis_gap<kind, double>({component(end[0]), component(end[1]), component(end[2])});
-            const double bound = bounds.linear_on_interval() * extent;
-            return (s.above > bound && e.above > bound) || (s.below < -bound && e.below < -bound);
-        };
-        return along([](const Vector3<double>& v) { return v.x; }, extents.x) ||
-               along([](const Vector3<double>& v) { return v.y; }, extents.y) ||
-               along([](const Vector3<double>& v) { return v.z; }, extents.z);
-    }
-
-    RelativeMotion<double> r;
-    ErrorBounds bounds;
-    Extents<double> extents;
-    Scales<double> scale;
-    Cubic<double> cubic;
-    double coplanarity_bound;
-    EdgeFunction edges[4][3];  ///< p, q, t, s of visit_edge_functions per axis; s for edge-edge alone.
+    PairCoefficients pair;
     bool apart_throughout;
 };
 

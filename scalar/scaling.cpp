@@ -39,10 +39,30 @@ void scale_axis(double (&x)[8])
     }
 }
 
+/// With points 0 and `origin` exchanged.
+RelativeMotion<double> unscaled_relative_motion(const double* coordinates, int origin)
+{
+    const auto point = [=](int i) { return coordinates + 3 * (i == 0 ? origin : i == origin ? 0 : i); };
+    const double* const start = point(0);
+    const auto relative = [&](int i, int end) {
+        const double *p = point(i) + 12 * end, *p0 = start + 12 * end;
+        return Vector3<double>{p[0] - p0[0], p[1] - p0[1], p[2] - p0[2]};
+    };
+    return {{relative(1, 0), relative(2, 0), relative(3, 0)}, {relative(1, 1), relative(2, 1), relative(3, 1)}};
+}
+
 }  // namespace
 
 RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin)
 {
+    if (t_max == 1.0) {
+        const RelativeMotion<double> r = unscaled_relative_motion(coordinates, origin);
+        const Extents<double> e = extents(r);
+        const auto needs_none = [](double extent) {
+            return extent == 0.0 || (extent >= smallest_unscaled && extent <= largest_unscaled);
+        };
+        if (needs_none(e.x) && needs_none(e.y) && needs_none(e.z)) return r;
+    }
     double scaled[24];
     for (int axis = 0; axis < 3; ++axis) {
         double x[8];

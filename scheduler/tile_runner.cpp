@@ -125,7 +125,8 @@ scalar::SearchResult answer_pair(const Job& job, const double* coordinates, doub
 {
     if (job.parameters.separation.distance > 0.0)
         return scalar::separation_search(job.kind, coordinates, job.parameters, time_limit(cutoff));
-    scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters);
+    const IntervalKernel* const lanes = job.kernels == nullptr ? nullptr : &job.kernels->intervals;
+    scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters, lanes);
     if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
     return found;
 }

@@ -25,7 +25,7 @@
 #pragma once
 
 #include <block_source.hpp>
-#include <halves_certificate.hpp>
+#include <part_certificates.hpp>
 #include <root_stages.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
@@ -56,7 +56,7 @@ private:
     static constexpr unsigned width = Lane<L>::width;
 
     const SearchParameters& parameters;
-    const CertificateBounds whole, halves, early;
+    const CertificateBounds whole, halves, on_part;
     const double cutoff;
     TileScratch& scratch;
     BlockSource<kind, L> source;
@@ -64,7 +64,7 @@ private:
 
     FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& s)
         : parameters{*request.parameters}, whole{parameters.bounds.certificates()}, halves{parameters.bounds.halves()},
-          early{parameters.bounds.early()}, cutoff{request.cutoff}, scratch{s}, source{request, s}, root_stages{parameters, s}
+          on_part{parameters.bounds.on_part()}, cutoff{request.cutoff}, scratch{s}, source{request, s}, root_stages{parameters, s}
     {
     }
 
@@ -171,20 +171,14 @@ private:
         }
     }
 
-    /// The three certificates on [0, cutoff] and one leaf more, with bounds under which the certified search
-    /// finds every leaf there apart: toi is greater than the cutoff. Only the end of the motion moves; errors are
-    /// those of an interpolated end, and the scale is that of the whole motion, to which the search's bounds refer.
+    /// Certificates on [0, cutoff] and one leaf more: the certified search finds every leaf there apart, so toi is greater than
+    /// the cutoff. Only the end of the motion moves.
     FASTCCD_INLINE LaneMask<L> apart_until_cutoff(const PairRecord<L>& record)
     {
         const L end = broadcast<L>(cutoff + 2 * parameters.leaf_width < 1.0 ? cutoff + 2 * parameters.leaf_width : 1.0);
         const RelativeMotion<L> r{{record.r.start[0], record.r.start[1], record.r.start[2]},
                                   {position(record.r, 0, end), position(record.r, 1, end), position(record.r, 2, end)}};
-        const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
-        const auto apart_in_projections = visit_edge_functions<kind>(
-            r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                return quadratic_certificate<kind>(p, q, t, s, record.scale, early);
-            });
-        return cubic_certificate(cubic, record.scale.volume, early) | apart_in_projections;
+        return part_certificate<kind>(r, record.scale, on_part);
     }
 };
 

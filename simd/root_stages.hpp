@@ -4,6 +4,7 @@
 #include <area_inclusion.hpp>
 #include <householder.hpp>
 #include <lane_results.hpp>
+#include <part_certificates.hpp>
 #include <projected_inclusion.hpp>
 #include <records.hpp>
 
@@ -73,7 +74,7 @@ private:
                                                          parameters.leaf_width, window.low, window.high);
         const unsigned certain =
             lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), record.scale.volume));
-        if (certain != lanes) leave_undecided(scratch, record.pair, lanes & ~certain);
+        if (certain != lanes) look_at_quarters(record, lanes & ~certain);
 
         const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
         const LaneMask<L> in_second = opposite_signs(pieces.value[1], pieces.value[2]);
@@ -92,6 +93,19 @@ private:
         Lane<L>::store(&search.high[i], select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3])));
         Lane<L>::store(&search.later_low[i], select<L>(first_two, pieces.time[1], pieces.time[2]));
         Lane<L>::store(&search.later_high[i], select<L>(first_two, pieces.time[2], pieces.time[3]));
+    }
+
+    /// The last look at pairs whose cubic is too close to zero to tell exactly where it changes sign, as that of edges that stay
+    /// parallel: most of them are clearly apart. Rare, so out of the way of the others.
+    __attribute__((noinline)) void look_at_quarters(const PairRecord<L>& record, unsigned lanes)
+    {
+        if (parameters.leaf_width > 0.25) return leave_undecided(scratch, record.pair, lanes);  // a leaf is more than a quarter
+        const Window<L> window = window_of(record.pair);
+        const ApartOnHalves<L> apart = quarters_certificate<kind>(record.r, record.scale, parameters.bounds.on_part());
+        const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+        const LaneMask<L> first = apart.first | less(zero, window.low), second = apart.second | less(window.high, one);
+        lanes &= ~Lane<L>::bits(first & second);
+        if (lanes != 0) leave_undecided(scratch, record.pair, lanes);
     }
 
     FASTCCD_INLINE void next_piece(unsigned i)
@@ -245,7 +259,7 @@ private:
         if ((undecided & crossing) != 0)
             undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds)));
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
-        if (undecided != 0) leave_undecided(scratch, root.pair, undecided);
+        if (undecided != 0) look_at_quarters(root, undecided);
     }
 
     /// `reported` is left to mark_reported: bits of one word would wait for one another here.

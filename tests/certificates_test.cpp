@@ -60,12 +60,20 @@ std::string lane_proof(const oracle::Pair& pair, const SearchParameters& paramet
         (on_halves.first.value && on_halves.second.value))
         return "halves";
 
-    const auto early = portable::RelativeMotion<double>{
-        {r.start[0], r.start[1], r.start[2]},
-        {portable::position(r, 0, i.b), portable::position(r, 1, i.b), portable::position(r, 2, i.b)}};
-    const auto early_cubic = portable::coplanarity_cubic(early, portable::cross_product(early, 0, 1));
-    if (portable::cubic_certificate(early_cubic, scale.volume, bounds.early()).value) return "early cubic";
-    if (in_projections(early, bounds.early())) return "early quadratic";
+    const auto on_quarters = portable::quarters_certificate<kind>(r, scale, bounds.on_part());
+    if ((on_quarters.first.value && i.b <= 0.5) || (on_quarters.second.value && i.a >= 0.5) ||
+        (on_quarters.first.value && on_quarters.second.value))
+        return "quarters";
+
+    for (const double start : {0.0, i.a}) {
+        const auto part = portable::RelativeMotion<double>{
+            {portable::position(r, 0, start), portable::position(r, 1, start), portable::position(r, 2, start)},
+            {portable::position(r, 0, i.b), portable::position(r, 1, i.b), portable::position(r, 2, i.b)}};
+        const auto cubic_on_part = portable::coplanarity_cubic(part, portable::cross_product(part, 0, 1));
+        if (portable::cubic_certificate(cubic_on_part, scale.volume, bounds.on_part()).value) return "cubic on part";
+        if (in_projections(part, bounds.on_part())) return "quadratic on part";
+        if (portable::separated_on_part<kind>(part, extents, bounds.on_part()).value) return "linear on part";
+    }
 
     const double centre = i.a + 0.5 * (i.b - i.a), delta = std::max(centre - i.a, i.b - centre);
     if (portable::projected_inclusion<kind>(r, scale, centre, delta, bounds).absent.value) return "projected inclusion";

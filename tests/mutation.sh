@@ -94,9 +94,10 @@ mutant 'hull_deviation = 0' $bounds 's/hull_deviation = 4\.0/hull_deviation = 0/
 mutant 'no margin on intervals' $bounds 's/cubic_on_interval\(\) \+ \(2 \* cubic_blossom_levels \+ slack\) \* u/cubic_on_interval()/' error_bounds_test
 mutant 'no margin of edge functions' $bounds 's/4 \* rho \+ 16 \+ 2 \* \(4 \* rho \+ 18 \+ slack\)/4 * rho + 16/' error_bounds_test
 mutant 'no margin of sums of edge functions' $bounds 's/12 \* rho \+ 58 \+ 8 \* \(4 \* rho \+ 18 \+ slack\)/12 * rho + 58/' error_bounds_test
-mutant 'no margin of the early cubic' $bounds 's/ \+ 3 \* 2 \* cubic_on_interval\(\)//' error_bounds_test
-mutant 'no margin of early edge functions' $bounds 's/ \+ 2 \* 2 \* quadratic_on_interval\(\)//' error_bounds_test
-mutant 'no margin of early sums' $bounds 's/ \+ 2 \* 2 \* 4 \* quadratic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of the cubic on a part' $bounds 's/ \+ 3 \* 2 \* cubic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of edge functions on a part' $bounds 's/ \+ 2 \* 2 \* quadratic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of sums on a part' $bounds 's/ \+ 2 \* 2 \* 4 \* quadratic_on_interval\(\)//' error_bounds_test
+mutant 'no margin of gaps on a part' $bounds 's/3 \* linear_on_interval\(\)/linear_on_interval()/' error_bounds_test
 mutant 'no margin of the halved cubic' $bounds 's/ \+ 12 \* \(2 \* cubic_on_interval\(\)\)//' error_bounds_test
 mutant 'no margin of halved edge functions' $bounds 's/ \+ 4 \* \(2 \* quadratic_on_interval\(\)\)//' error_bounds_test
 mutant 'no margin of halved sums' $bounds 's/ \+ 4 \* \(2 \* 4 \* quadratic_on_interval\(\)\)//' error_bounds_test
@@ -122,17 +123,29 @@ mutant 'halved sums by sign alone' $halves 's/broadcast<L>\(bounds\.quadratic_su
 mutant 'halved cubic without the middle' $halves 's/\{f\.start, a, a \+ b, middle\}/{f.start, a, a, a}/' certificates_test same_bits_test
 mutant 'halved quadratic without the middle' $halves 's/return \{start, first, first \+ second, second, end\}/return {start, first, first, second, end}/' certificates_test same_bits_test
 
+quarters=kernels/part_certificates.hpp
+mutant 'apart on one quarter is apart on its half' $quarters 's/first & on_next/first | on_next/' certificates_test same_bits_test
+mutant 'quarters: of one half' simd/root_stages.hpp 's/~Lane<L>::bits\(first & second\)/~Lane<L>::bits(first | second)/' same_bits_test
+mutant 'quarters of wide leaves' simd/root_stages.hpp 's/parameters\.leaf_width > 0\.25/parameters.leaf_width > 2/' certificates_test
+mutant 'gaps on a part by sign alone' $quarters 's/broadcast<L>\(bounds\.linear\) \* extent/broadcast<L>(0.0) * extent/' certificates_test
+mutant 'gaps on a part at one end' $quarters 's/min\(start\.above, end\.above\)/max(start.above, end.above)/' certificates_test
+
 # ---- The certified search loosened
-search=scalar/pair_polynomials.hpp
-mutant 'search: cubic by sign alone' $search 's/smallest\(f\) > cubic_bound\(\) \|\| largest\(f\) < -cubic_bound\(\)/smallest(f) > 0 || largest(f) < 0/' certificates_test
-mutant 'search: edge functions by sign alone' $search 's/smallest\(c\) > e\.bound \? 1 : largest\(c\) < -e\.bound/smallest(c) > 0 ? 1 : largest(c) < 0/' certificates_test
-mutant 'search: axis gaps by sign alone' $search 's/bounds\.linear_on_interval\(\) \* extent/0.0 * extent/' certificates_test truth_test stress
+search=scalar/pair_polynomials.hpp intervals=kernels/interval_certificates.hpp
+mutant 'search: cubic by sign alone' $intervals 's/broadcast<L>\((-?)pair\.cubic_bound\)/broadcast<L>(0.0)/g' certificates_test
+mutant 'search: edge functions by sign alone' $intervals 's/broadcast<L>\((-?)e\.bound\)/broadcast<L>(0.0)/g' certificates_test
+mutant 'search: axis gaps by sign alone' $search 's/per_extent = bounds\.linear_on_interval\(\)/per_extent = 0.0/' certificates_test truth_test stress
 mutant 'search: inclusion at no area' $search 's/p != 0 && p == q && q == t/p == q && q == t/' truth_test nothing_invented_test same_bits_test stress
 mutant 'search: proof by sign alone' scalar/leaf_search.hpp 's/f\.c0 > bound && f\.c3 < -bound\) \|\| \(f\.c0 < -bound && f\.c3 > bound/f.c0 > 0 && f.c3 < 0) || (f.c0 < 0 && f.c3 > 0/' certificates_test truth_test nothing_invented_test same_bits_test stress
 mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/leaf\.a > 0\.0 && contact_proven/contact_proven/' never_zero_test
 mutant 'search: coarse next to time 0' scalar/leaf_search.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
-mutant 'search: near misses not halved' scalar/leaf_search.hpp 's/pair\.apart\(i\) \|\| pair\.apart_by_area\(i\)/false/' truth_test nothing_invented_test
-mutant 'search: no area certificate' $search 's/return area_certificate<kind>\(r, scale, i\.a \+ half, half, bounds\)\.value/return half < 0/' nothing_invented_test same_bits_test
+mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
+mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && pair\.apart_by_area\(i\)\)//' ordered_search_test
+mutant 'several: answers for other intervals' scalar/ordered_search.hpp 's/if \(!\(questions\.at\(k\) == i\)\) continue;//' ordered_search_test
+mutant 'several: the way taken whatever the answers' scalar/ordered_search.hpp 's/if \(\(\(answers \^ apart\)[^;]*;//' ordered_search_test
+mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel\.lanes <= limit/intervals <= limit/' ordered_search_test
+mutant 'several: what lies beside the way forgotten' scalar/ordered_search.hpp 's/stack\.push\(beside\[k\]\)/static_cast<void>(beside[k])/' ordered_search_test
+mutant 'several: narrow intervals halved' scalar/ordered_search.hpp 's/if \(narrowest\(way\)\) return way;//' ordered_search_test
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/\(s \* t_max\) \* \(1\.0 - 0x1p-52\)/s * t_max/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
 mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test

@@ -160,25 +160,28 @@ TEST(Margins, ChangeOfEdgeFunctions)
     EXPECT_GT(found, 0.3);
 }
 
-/// Certificates on [0, b] from a motion with an interpolated end (earliest contact), against the search on parts of it.
-portable::RelativeMotion<double> until(const portable::RelativeMotion<double>& r, double end)
+/// Certificates on a part from a motion with interpolated ends (earliest contact, quarters), against the search on parts of it.
+Part lanes_part(const Input& in) { return in.a < 0.5 ? Part{0.0, in.b} : Part{std::min(in.a, in.b), std::max(in.a, in.b)}; }
+
+portable::RelativeMotion<double> motion_on(const portable::RelativeMotion<double>& r, Part i)
 {
-    return {{r.start[0], r.start[1], r.start[2]},
-            {portable::position(r, 0, end), portable::position(r, 1, end), portable::position(r, 2, end)}};
+    return {{portable::position(r, 0, i.a), portable::position(r, 1, i.a), portable::position(r, 2, i.a)},
+            {portable::position(r, 0, i.b), portable::position(r, 1, i.b), portable::position(r, 2, i.b)}};
 }
 
 /// Lanes compare f0, 3 f1, 3 f2, f3 with one bound; only a third of it is certain of f1 and f2.
-TEST(Margins, EarlyCubic)
+TEST(Margins, CubicOnPart)
 {
-    expect_bound("early().cubic", 0.1, [](const Input& in) {
+    expect_bound("on_part().cubic", 0.1, [](const Input& in) {
         const Computed c{in};
-        const auto early = portable::bernstein(
-            portable::coplanarity_cubic(until(c.r, in.b), portable::cross_product(until(c.r, in.b), 0, 1)));
-        const Part leaf = part_of(0.0, in.b, in);
+        const Part part = lanes_part(in);
+        const auto motion = motion_on(c.r, part);
+        const auto seen = portable::bernstein(portable::coplanarity_cubic(motion, portable::cross_product(motion, 0, 1)));
+        const Part leaf = part_of(part.a, part.b, in);
         const Cubic<double> local = portable::on_interval(cubic_of(c), leaf.a, leaf.b);
-        const double margin = std::max(portable::smallest(early) - portable::smallest(local),
-                                       portable::largest(local) - portable::largest(early));
-        return 3 * (margin + search_bound(c)) / (c.bounds.early().cubic * c.scale.volume);
+        const double margin = std::max(portable::smallest(seen) - portable::smallest(local),
+                                       portable::largest(local) - portable::largest(seen));
+        return 3 * (margin + search_bound(c)) / (c.bounds.on_part().cubic * c.scale.volume);
     }, ordinary_shifts, effort);
 }
 
@@ -211,17 +214,36 @@ double edge_function_margin(const Input& in, bool sum, const Computed& c, const 
     return worst;
 }
 
-TEST(Margins, EarlyEdgeFunctions)
+TEST(Margins, EdgeFunctionsOnPart)
 {
     const auto ratio = [](const Input& in, bool sum) {
         const Computed c{in};
-        const CertificateBounds early = c.bounds.early();
-        return edge_function_margin(in, sum, c, until(c.r, in.b), part_of(0.0, in.b, in), [](double start, double twice_middle, double end) {
+        const CertificateBounds bounds = c.bounds.on_part();
+        const Part part = lanes_part(in);
+        return edge_function_margin(in, sum, c, motion_on(c.r, part), part_of(part.a, part.b, in), [](double start, double twice_middle, double end) {
             return Quadratic<double>{start, 0.5 * twice_middle, end};
-        }, 2, sum ? early.quadratic_sum : early.quadratic);
+        }, 2, sum ? bounds.quadratic_sum : bounds.quadratic);
     };
-    expect_bound("early().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
-    expect_bound("early().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
+    expect_bound("on_part().quadratic", 0.1, [&](const Input& in) { return ratio(in, false); }, ordinary_shifts, effort);
+    expect_bound("on_part().quadratic_sum", 0.1, [&](const Input& in) { return ratio(in, true); }, ordinary_shifts, effort);
+}
+
+/// A gap between x1 and x0 along each axis: lanes at the ends of a part, the search at those of an interval inside.
+TEST(Margins, GapsOnPart)
+{
+    expect_bound("on_part().linear", 0.1, [](const Input& in) {
+        const Computed c{in};
+        const Part part = lanes_part(in), leaf = part_of(part.a, part.b, in);
+        double worst = -1;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto gap = [&](double s) { return component(portable::position(c.r, 0, s), axis); };
+            const double extent = axis == 0 ? c.extents.x : axis == 1 ? c.extents.y : c.extents.z;
+            const double margin = std::max(std::min(gap(part.a), gap(part.b)) - std::min(gap(leaf.a), gap(leaf.b)),
+                                           std::max(gap(leaf.a), gap(leaf.b)) - std::max(gap(part.a), gap(part.b)));
+            worst = std::max(worst, (margin + c.bounds.linear_on_interval() * extent) / (c.bounds.on_part().linear * extent));
+        }
+        return worst;
+    }, ordinary_shifts, effort);
 }
 
 /// Certificates on both halves, against the search on parts of one of them. Lanes compare multiples of coefficients with

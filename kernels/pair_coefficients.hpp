@@ -1,0 +1,35 @@
+// What the certified search knows of a pair. Plain numbers only: kernels of every instruction set read it.
+#pragma once
+
+#include <fastccd/options.hpp>
+
+namespace fastccd {
+
+/// Bernstein coefficients over the whole interval [0, 1], of the pair as scaled by the search (scalar/scaling.hpp), and the bounds
+/// of what is computed from them on any part of it.
+struct PairCoefficients {
+    /// One component of an edge function (visit_edge_functions).
+    struct EdgeFunction {
+        double start, middle, end;
+        double bound;
+    };
+
+    PairKind kind;
+    double start[3][3], end[3][3];  ///< r_1, r_2, r_3 by axis, at both ends.
+    double gap_bound[3];            ///< Of a difference of two coordinates, by axis.
+    double cubic[4], cubic_bound;   ///< Of coplanarity.
+    EdgeFunction edges[3][4];       ///< By axis of projection: p, q, t, and for two edges s.
+    double edge, speed;             ///< C1 and C2 of eq. 6.
+    double area_rounding;           ///< Of the area test.
+};
+
+/// Bit i: the pair is certainly apart on [starts[i], ends[i]], one interval per lane. `by_area`: eq. 7 counts, too.
+using ApartOnIntervals = unsigned(const PairCoefficients&, const double* starts, const double* ends, bool by_area);
+
+/// The same for the lanes of one instruction set, `lanes` intervals at a time.
+struct IntervalKernel {
+    unsigned lanes;
+    ApartOnIntervals* apart;
+};
+
+}  // namespace fastccd

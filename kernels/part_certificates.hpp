@@ -1,0 +1,62 @@
+// Certificates on a part [a, b] of the interval, from the motion over that part.
+//
+// The ends of that motion may be interpolated: `bounds` are ErrorBounds::on_part(), and scale and extents are those of the whole
+// motion, to which the bounds of the certified search refer. It finds each interval inside the part apart, too.
+#pragma once
+
+#include <certificates.hpp>
+#include <halves_certificate.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// By volume, or by area in at least one coordinate projection.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> part_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, const CertificateBounds& bounds)
+{
+    const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
+    const auto apart_in_projections = visit_edge_functions<kind>(
+        r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+            return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
+        });
+    return cubic_certificate(cubic, scale.volume, bounds) | apart_in_projections;
+}
+
+/// By length: separated along an axis. A gap is the least of several linear functions of time, so it is nowhere less than at an end.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> separated_on_part(const RelativeMotion<L>& r, const Extents<L>& extents, const CertificateBounds& bounds)
+{
+    const auto along = [&](auto component, L extent) FASTCCD_INLINE_LAMBDA {
+        const AxisGap<L> start = axis_gap<kind, L>({component(r.start[0]), component(r.start[1]), component(r.start[2])});
+        const AxisGap<L> end = axis_gap<kind, L>({component(r.end[0]), component(r.end[1]), component(r.end[2])});
+        const L bound = broadcast<L>(bounds.linear) * extent;
+        return less(bound, min(start.above, end.above)) | less(max(start.below, end.below), broadcast<L>(0.0) - bound);
+    };
+    return along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, extents.x) |
+           along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, extents.y) |
+           along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, extents.z);
+}
+
+/// By any of the three on both quarters of either half.
+template <PairKind kind, class L>
+FASTCCD_INLINE ApartOnHalves<L> quarters_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, const CertificateBounds& bounds)
+{
+    const Extents<L> whole = extents(r);
+    RelativeMotion<L> quarter = r;
+    const auto next_end = [&](double s) FASTCCD_INLINE_LAMBDA {
+        for (int i = 0; i < 3; ++i) {
+            quarter.start[i] = quarter.end[i];
+            quarter.end[i] = position(r, i, broadcast<L>(s));
+        }
+    };
+    const auto on_next = [&](double end) FASTCCD_INLINE_LAMBDA {
+        next_end(end);
+        return part_certificate<kind>(quarter, scale, bounds) | separated_on_part<kind>(quarter, whole, bounds);
+    };
+    next_end(0.0);
+    LaneMask<L> first = on_next(0.25);
+    first = first & on_next(0.5);
+    LaneMask<L> second = on_next(0.75);
+    return {first, second & on_next(1.0)};
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -1,0 +1,62 @@
+// Where the certified search will probably end up. Nothing is concluded from it; it says which questions to ask together.
+#pragma once
+
+#include <limits>
+
+#include <householder.hpp>
+#include <pair_coefficients.hpp>
+#include <search_parameters.hpp>
+
+namespace fastccd::scalar {
+
+using namespace FASTCCD_KERNEL_NAMESPACE;
+
+/// The times at which the coplanarity cubic comes within its bound of zero, in order, found when asked for.
+class ExpectedContact {
+public:
+    static constexpr double nowhere = std::numeric_limits<double>::infinity();
+
+    explicit ExpectedContact(const PairCoefficients& pair, const SearchParameters& parameters)
+        : bound{pair.cubic_bound},
+          pieces{monotone_pieces<double>({pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, 0.0, parameters.bounds,
+                                         parameters.leaf_width, 0.0, 1.0)}
+    {
+        // Zero throughout: such a pair may touch anywhere.
+        bool zero = true;
+        for (const double value : pieces.value) zero = zero && level(value) == value;
+        if (zero) next_piece = 3;
+    }
+
+    /// The first one that is not before s; nowhere if there is none.
+    double from(double s)
+    {
+        for (; time < s; ++next_piece) {
+            if (next_piece == 3) return time = nowhere;
+            time = in_piece(next_piece);
+        }
+        return time;
+    }
+
+private:
+    /// The value next to zero that a search coming from `value` meets first.
+    [[nodiscard]] double level(double value) const { return min(max(value, -bound), bound); }
+
+    [[nodiscard]] double in_piece(int k) const
+    {
+        const double low = pieces.time[k], high = pieces.time[k + 1], zero = level(pieces.value[k]);
+        if (zero == pieces.value[k]) return low;
+        if ((pieces.value[k] < zero) == (pieces.value[k + 1] < zero)) return -1.0;
+        PowerCubic<double> f = pieces.f;
+        f.c0 -= zero;
+        double s = 0.5 * (low + high);
+        for (int step = 0; step < quick_steps + 1; ++step) s = clipped_step(f, Bracket<double>{low, high}, s);
+        return s;
+    }
+
+    double bound;
+    MonotonePieces<double> pieces;
+    int next_piece = 0;
+    double time = -1.0;
+};
+
+}  // namespace fastccd::scalar

@@ -1,0 +1,154 @@
+// The certified search's walk over intervals, earliest first: one at a time, or several where there are lanes for them.
+//
+// Each answer decides what is asked next. Kernels with lanes answer for several intervals in little more than the time of
+// one, so a question is joined by those that probably follow it: the way down to where contact is expected, and what lies
+// to the left of that way; if there is no such place, the halves of what waits. A wrong guess costs time alone: an answer is
+// used for the very interval it was given for, and only if the walk comes to it.
+#pragma once
+
+#include <optional>
+
+#include <expected_contact.hpp>
+#include <interval_stack.hpp>
+#include <pair_polynomials.hpp>
+
+namespace fastccd::scalar {
+
+template <PairKind kind>
+class OrderedSearch {
+public:
+    /// Without `lanes` intervals are looked at one at a time, and so they are with one or two: that would take longer.
+    OrderedSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& parameters, const IntervalKernel* lanes)
+        : pair{polynomials}
+    {
+        if (lanes == nullptr || lanes->lanes < 4) return;
+        kernel = *lanes;
+        expected.emplace(pair.coefficients(), parameters);
+    }
+
+    /// Takes intervals from the stack and counts them; drops those with a certificate and halves the others, until one of those
+    /// is not to be halved: where narrowest(i), or when more than `limit` have been counted. None: all have certificates.
+    /// `by_area`: eq. 7 counts, too.
+    template <class Narrowest>
+    std::optional<Interval> next_without_certificate(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
+    {
+        while (!stack.empty()) {
+            if (expected && intervals + kernel.lanes <= limit) {
+                if (const auto found = look_at_several(stack, by_area, narrowest)) return found;
+                continue;
+            }
+            const Interval i = stack.pop();
+            ++intervals;
+            if (pair.apart(i) || (by_area && pair.apart_by_area(i))) continue;
+            if (intervals > limit || narrowest(i)) return i;
+            stack.push_halves(i);
+        }
+        return std::nullopt;
+    }
+
+    unsigned intervals = 0;  ///< Counted.
+
+private:
+    static constexpr unsigned most_lanes = 8;
+
+    /// Questions for the kernel, in the order in which the walk comes to them.
+    struct Questions {
+        alignas(64) double starts[most_lanes];
+        alignas(64) double ends[most_lanes];
+        unsigned size = 0;
+
+        void put(unsigned k, Interval i) { starts[k] = i.a, ends[k] = i.b; }
+        [[nodiscard]] Interval at(unsigned k) const { return {starts[k], ends[k]}; }
+    };
+
+    template <class Narrowest>
+    std::optional<Interval> look_at_several(IntervalStack& stack, bool by_area, Narrowest narrowest)
+    {
+        const double target = expected->from(stack.peek(0).a);
+        return target == ExpectedContact::nowhere ? look_at_halves(stack, by_area, narrowest)
+                                                  : look_towards(target, stack, by_area, narrowest);
+    }
+
+    unsigned ask(Questions& questions, bool by_area) const
+    {
+        for (unsigned k = questions.size; k < kernel.lanes; ++k) questions.put(k, questions.at(0));
+        return kernel.apart(pair.coefficients(), questions.starts, questions.ends, by_area);
+    }
+
+    /// Intervals that wait, each with its halves.
+    template <class Narrowest>
+    std::optional<Interval> look_at_halves(IntervalStack& stack, bool by_area, Narrowest narrowest)
+    {
+        Questions questions;
+        for (unsigned k = 0; k < stack.size() && questions.size < kernel.lanes; ++k) {
+            const Interval i = stack.peek(k);
+            questions.put(questions.size++, i);
+            if (questions.size + 2 > kernel.lanes || narrowest(i)) continue;
+            questions.put(questions.size++, {i.a, i.middle()});
+            questions.put(questions.size++, {i.middle(), i.b});
+        }
+        return follow(questions, ask(questions, by_area), stack, narrowest);
+    }
+
+    /// The way down to `target`. Without branches on which way it turns: no processor foresees that.
+    template <class Narrowest>
+    std::optional<Interval> look_towards(double target, IntervalStack& stack, bool by_area, Narrowest narrowest)
+    {
+        Questions questions;
+        unsigned passed = 0, apart = 0;  // bits: what is expected to have a certificate
+        Interval way{};
+        bool holds = false;  // the way the target
+        while (!holds && passed < stack.size() && questions.size < kernel.lanes) {
+            way = stack.peek(passed++);
+            holds = way.contains(target);
+            apart |= unsigned{!holds} << questions.size;
+            questions.put(questions.size++, way);
+        }
+        Interval beside[most_lanes];  // on the right of the way
+        unsigned right = 0;
+        while (holds && questions.size + 2 <= kernel.lanes && !narrowest(way)) {
+            const double middle = way.middle();
+            const bool turns_right = middle < target;
+            questions.put(questions.size, {way.a, middle});
+            questions.put(questions.size + 1, {middle, way.b});
+            beside[right] = {middle, way.b};
+            apart |= unsigned{turns_right} << questions.size;
+            questions.size += 1 + unsigned{turns_right};
+            right += unsigned{!turns_right};
+            way = {turns_right ? middle : way.a, turns_right ? way.b : middle};
+        }
+
+        const unsigned answers = ask(questions, by_area);
+        if (((answers ^ apart) & ((1u << questions.size) - 1)) != 0) return follow(questions, answers, stack, narrowest);
+        // All as expected: to the end of the way at once.
+        intervals += questions.size;
+        stack.drop(passed);
+        for (unsigned k = 0; k < right; ++k) stack.push(beside[k]);
+        if (!holds) return std::nullopt;
+        if (narrowest(way)) return way;
+        stack.push_halves(way);
+        return std::nullopt;
+    }
+
+    /// As far as the answers lead.
+    template <class Narrowest>
+    std::optional<Interval> follow(const Questions& questions, unsigned answers, IntervalStack& stack, Narrowest narrowest)
+    {
+        for (unsigned k = 0; k < questions.size && !stack.empty(); ++k) {
+            const Interval i = stack.peek(0);
+            if (!(questions.at(k) == i)) continue;
+            stack.pop();
+            ++intervals;
+            if ((answers >> k & 1) != 0) continue;
+            if (narrowest(i)) return i;
+            stack.push_halves(i);
+        }
+        return std::nullopt;
+    }
+
+    const PairPolynomials<kind>& pair;
+    IntervalKernel kernel{};
+    std::optional<ExpectedContact> expected;  ///< If there are lanes.
+};
+
+}  // namespace fastccd::scalar
