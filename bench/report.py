@@ -110,6 +110,18 @@ def stage_table(rows, isas):
     return ["kind", "data", "stage"] + [f"{isa}, ns/pair" for isa in isas] + ["kept", "spread"], out
 
 
+def search_table(rows, isas):
+    pattern = r"search/(?P<kind>\w+)/(?P<isa>\w+)/(?P<sort>\w+)/(?P<data>[^/]+)"
+    out = []
+    for (kind, sort, data), found in group_by_isa(rows, pattern).items():
+        best = found.get(isas[-1]) or list(found.values())[-1]
+        out.append([kind, data, sort, percent(best.get("of_pairs")), number(best["intervals"])]
+                   + [number(found.get(isa, {}).get("s/pair"), 1e9) for isa in isas]
+                   + [percent(best.get("of_time")), percent(best.get("spread"))])
+    return (["kind", "data", "searched", "of pairs", "intervals"] + [f"{isa}, ns/search" for isa in isas] + ["of time", "spread"],
+            out)
+
+
 def peer_table(rows):
     out = []
     for name, row in rows.items():
@@ -136,7 +148,8 @@ def tables(record):
             f"{context['date'][:10]}, commit {context.get('commit', 'unknown')}, "
             f"load average at the start {context['load_avg'][0]:.1f}.\n")
     for title, (header, body) in (("Narrow phase", narrow_phase_table(rows, isas)), ("Moving mesh", mesh_table(rows)),
-                                  ("Stages", stage_table(rows, isas)), ("Peers, one thread", peer_table(rows))):
+                                  ("Stages", stage_table(rows, isas)), ("Certified search", search_table(rows, isas)),
+                                  ("Peers, one thread", peer_table(rows))):
         if body:
             text += f"\n#### {title}\n\n" + table(header, body)
     return text

@@ -1,16 +1,16 @@
 // The stages of the pipeline one by one, on data in the L2 cache, per instruction set: what each costs when nothing has
-// to be waited for. `stage/vertex_face/avx2/certificates/random`.
+// to be waited for. `stage/vertex_face/avx2/certificates/random`. And the certified search.
 #include <memory>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
-#include <certified_search.hpp>
 #include <fastccd/isa.hpp>
 
 #include "bench_main.hpp"
 #include "bench_table.hpp"
 #include "datasets.hpp"
+#include "search_bench.hpp"
 #include "stage_input.hpp"
 #include "stage_table.hpp"
 
@@ -95,28 +95,6 @@ void run_stage(benchmark::State& state, const Stage& stage, const std::string& d
     time_stage(state, entries, [&] { return stage.run(input); });
 }
 
-/// The certified search, which has no lanes: over a sample of all pairs, and over pairs in contact, which it has to
-/// follow down to the tolerance.
-void run_search(benchmark::State& state, bool contacts, const std::string& data, PairKind kind)
-{
-    const StageData& stages = stage_data(data, kind);
-    const std::vector<double>& pairs = contacts ? stages.contacts() : stages.sample();
-    const SearchParameters parameters = *stages.input().parameters;
-    if (pairs.empty()) return fail(state, "no pair of the data set is in contact");
-    std::size_t intervals = 0;
-    time_stage(state, pairs.size() / pair_coordinates, [&] {
-        unsigned found = 0;
-        intervals = 0;
-        for (std::size_t i = 0; i < pairs.size(); i += pair_coordinates) {
-            const scalar::SearchResult result = scalar::certified_search(kind, &pairs[i], parameters);
-            found += result.toi <= 1.0;
-            intervals += result.intervals;
-        }
-        return found;
-    });
-    state.counters["intervals"] = static_cast<double>(intervals * pair_coordinates) / static_cast<double>(pairs.size());
-}
-
 void register_benchmarks(bool)
 {
     const auto add = [](PairKind kind, const std::string& isa, const std::string& stage, const std::string& data, auto run) {
@@ -131,12 +109,9 @@ void register_benchmarks(bool)
                 [stage](benchmark::State& state, const std::string& d, PairKind k) { run_stage(state, stage, d, k); });
     };
     for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge})
-        for (const char* data : {"random", "generated"}) {
+        for (const char* data : {"random", "generated"})
             for (const StageTable* table : tables) add_table(kind, data, *table);
-            for (const bool contacts : {false, true})
-                add(kind, "scalar", contacts ? "certified_search_of_contacts" : "certified_search", data,
-                    [contacts](benchmark::State& state, const std::string& d, PairKind k) { run_search(state, contacts, d, k); });
-        }
+    register_search_benchmarks();
 }
 
 }  // namespace

@@ -96,16 +96,11 @@ StageData::StageData(PairKind kind, const PairBuffer& packed, const SearchParame
     : kind_{kind}, parameters_{parameters}, blocks_{stage_pairs}, candidates_(stage_queues), roots_(stage_queues)
 {
     if (packed.size() == 0) throw std::runtime_error("a data set without pairs has no stages");
-    for (std::size_t k = 0; k < stage_pairs; ++k) {
-        const Coordinates pair = coordinates(packed, visited(k, packed.size()));
-        blocks_.set(k, pair);
-        sample_.insert(sample_.end(), pair.begin(), pair.end());
-    }
+    for (std::size_t k = 0; k < stage_pairs; ++k) blocks_.set(k, coordinates(packed, visited(k, packed.size())));
     if (kind == PairKind::vertex_face)
         fill_queues<PairKind::vertex_face>(packed);
     else
         fill_queues<PairKind::edge_edge>(packed);
-    find_contact_pairs(packed);
 }
 
 template <PairKind kind>
@@ -123,20 +118,6 @@ void StageData::fill_queues(const PairBuffer& packed)
             all_full = !append(roots_, record) && candidates_full;
         }
         if (!any) throw std::runtime_error("no pair of the data set reaches the last stages");
-    }
-}
-
-void StageData::find_contact_pairs(const PairBuffer& packed)
-{
-    Options options;
-    options.tolerance = parameters_.leaf_width;
-    std::vector<Contact> found;
-    if (const Status status = find_contacts(kind_, packed.view(), options, found); !status.ok())
-        throw std::runtime_error(message(status.error));
-    const std::size_t step = std::max<std::size_t>(found.size() / (stage_queues * queue_entries), 1);
-    for (std::size_t i = 0; i < found.size(); i += step) {
-        const Coordinates pair = coordinates(packed, found[i].pair);
-        contacts_.insert(contacts_.end(), pair.begin(), pair.end());
     }
 }
 

@@ -22,19 +22,13 @@ public:
         return {kind_, &parameters_, blocks_.data(), blocks_.size(), candidates_.data(), roots_.data()};
     }
 
-    /// Coordinates of the sampled pairs, 24 each, and of pairs in contact: for the certified search.
-    [[nodiscard]] const std::vector<double>& sample() const noexcept { return sample_; }
-    [[nodiscard]] const std::vector<double>& contacts() const noexcept { return contacts_; }
-
 private:
     template <PairKind kind>
     void fill_queues(const PairBuffer& packed);
-    void find_contact_pairs(const PairBuffer& packed);
 
     PairKind kind_;
     SearchParameters parameters_;
     PairBuffer blocks_;
-    std::vector<double> sample_, contacts_;
     std::vector<PairQueue> candidates_;
     std::vector<RootQueue> roots_;
 };
