@@ -123,7 +123,7 @@ FASTCCD_INLINE SignRange<L> sign_range(L a, L b, L c)
 /// the vertex is outside if one is strictly positive and another strictly negative throughout.
 /// Edge-edge: p, t are the orientations of r2, r3 against the first edge, q, s those of 0, r1 against
 /// the second; the edges are apart if both of one couple are strictly on one side throughout.
-/// `bound_sum` is for s alone, which is a sum of three cross products.
+/// `bound_sum` is for s, which is a sum of three cross products; q, compared together with it, could do with less.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> apart_in_projection(const SignRange<L>& p, const SignRange<L>& q, const SignRange<L>& t,
                                                const SignRange<L>& s, L bound, L bound_sum)
@@ -134,8 +134,7 @@ FASTCCD_INLINE LaneMask<L> apart_in_projection(const SignRange<L>& p, const Sign
                less(min(p.largest, q.largest, t.largest), zero - bound);
     } else {
         return less(bound, min(p.smallest, t.smallest)) | less(max(p.largest, t.largest), zero - bound) |
-               (less(bound, q.smallest) & less(bound_sum, s.smallest)) |
-               (less(q.largest, zero - bound) & less(s.largest, zero - bound_sum));
+               less(bound_sum, min(q.smallest, s.smallest)) | less(max(q.largest, s.largest), zero - bound_sum);
     }
 }
 

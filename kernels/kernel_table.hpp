@@ -23,7 +23,7 @@ struct LaneQueue {
     static constexpr unsigned fields = field_count;
     /// A stage drains the queue when it holds this many entries; one batch adds at most 1 per lane ...
     static constexpr unsigned drain_at = 64;
-    static constexpr unsigned most_added = 8;
+    static constexpr unsigned most_added = most_lanes;
     /// ... and storing the last ones, or reading them, touches a full batch.
     static constexpr unsigned capacity = drain_at + most_added + 8;
 
@@ -72,8 +72,8 @@ inline constexpr std::size_t boxes_ahead = 32;
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {
     /// First time of contact: from the lanes the parameter s, in the end toi; +infinity if there is none.
-    alignas(64) double time[tile_pairs];
-    std::uint8_t roots[tile_pairs];            ///< Contact roots.
+    alignas(64) double time[tile_pairs + most_lanes];
+    std::uint8_t roots[tile_pairs + most_lanes];  ///< Contact roots. Past the last pair: where lanes without a contact write.
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];

@@ -5,6 +5,9 @@
 
 namespace fastccd {
 
+/// Of any instruction set.
+inline constexpr unsigned most_lanes = 8;
+
 /// Bernstein coefficients over the whole interval [0, 1], of the pair as scaled by the search (scalar/scaling.hpp), and the bounds
 /// of what is computed from them on any part of it.
 struct PairCoefficients {

@@ -41,10 +41,9 @@ FASTCCD_INLINE Inclusion<L> projected_inclusion(const RelativeMotion<L>& r, cons
         if constexpr (kind == PairKind::vertex_face) {
             return {absent, less(bound, min(pk, qk, tk)) | less(max(pk, qk, tk), zero - bound)};
         } else {
-            const LaneMask<L> across_first = (less(bound, pk) & less(tk, zero - bound)) |
-                                             (less(bound, tk) & less(pk, zero - bound));
-            const LaneMask<L> across_second = (less(bound, qk) & less(sk, zero - bound_sum)) |
-                                              (less(bound_sum, sk) & less(qk, zero - bound));
+            // Across: one of a couple strictly positive, the other strictly negative.
+            const LaneMask<L> across_first = less(bound, max(pk, tk)) & less(min(pk, tk), zero - bound);
+            const LaneMask<L> across_second = less(bound_sum, max(qk, sk)) & less(min(qk, sk), zero - bound_sum);
             return {absent, across_first & across_second};
         }
     };

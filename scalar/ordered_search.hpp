@@ -49,8 +49,6 @@ public:
     unsigned intervals = 0;  ///< Counted.
 
 private:
-    static constexpr unsigned most_lanes = 8;
-
     /// Questions for the kernel, in the order in which the walk comes to them.
     struct Questions {
         alignas(64) double starts[most_lanes];

@@ -262,15 +262,21 @@ private:
         if (undecided != 0) look_at_quarters(root, undecided);
     }
 
-    /// `reported` is left to mark_reported: bits of one word would wait for one another here.
+    /// Without branches on which lanes are in contact: no processor foresees that, and while it finds out, the next batch would
+    /// wait. `reported` is left to mark_reported: bits of one word would wait for one another here.
     FASTCCD_INLINE void record_contacts(L pair, L left, unsigned contact)
     {
-        alignas(64) double lefts[width];
+        alignas(64) double lefts[width], pairs[width];
         Lane<L>::store(lefts, left);
-        for_each_pair(pair, contact, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
+        // Lanes past the end of a queue may hold any number.
+        Lane<L>::store(pairs, max(min(pair, broadcast<L>(tile_pairs)), broadcast<L>(0.0)));
+#pragma GCC unroll 8
+        for (unsigned lane = 0; lane < width; ++lane) {
+            const unsigned nowhere = static_cast<unsigned>(tile_pairs) + lane, is_contact = contact >> lane & 1;
+            const unsigned i = nowhere + ((static_cast<unsigned>(pairs[lane]) - nowhere) & (0u - is_contact));
             scratch.time[i] = lefts[lane] < scratch.time[i] ? lefts[lane] : scratch.time[i];
             ++scratch.roots[i];
-        });
+        }
     }
 };
 
