@@ -19,22 +19,20 @@ constexpr std::size_t no_pair = std::numeric_limits<std::size_t>::max();
 struct StepWorker : TileWorker {
     std::size_t invalid_before = 0;       ///< Invalid pairs up to its previous tile.
     std::size_t first_invalid = no_pair;  ///< Smallest index of those it has seen.
-
-    StepWorker() {}
 };
 
 /// Offers the contacts of the job, and its invalid pairs as contacts at time 0, under their index plus `offset`. Returns
 /// the first invalid pair that was looked at.
 std::size_t offer_all(const Job& job, std::size_t offset, SharedBest& best)
 {
-    tbb::combinable<StepWorker> workers;
+    Workers<StepWorker> workers;
     const auto cutoff = [&](std::size_t first) { return best.cutoff(job, offset + first); };
-    for_each_tile(job, workers, cutoff, [&](StepWorker& worker, std::size_t first, std::size_t) {
+    for_each_tile(job, workers, cutoff, [&](StepWorker& worker, std::size_t first, std::size_t count) {
         const Contact& earliest = worker.totals.earliest;
         if (earliest.pair != no_pair) best.offer({offset + earliest.pair, earliest.toi, earliest.proven, earliest.at_start});
         if (worker.totals.invalid == worker.invalid_before) return;
         worker.invalid_before = worker.totals.invalid;
-        for_each_bit(worker.scratch.reported, [&](std::size_t i) {
+        for_each_bit(worker.scratch.reported, count, [&](std::size_t i) {
             if (!std::isnan(worker.scratch.time[i])) return;
             worker.first_invalid = std::min(worker.first_invalid, offset + first + i);
             best.offer({offset + first + i, 0.0});

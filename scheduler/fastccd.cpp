@@ -21,7 +21,7 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
     const std::size_t size = pairs.source.size;
     if (toi.size() != size || (!roots.empty() && roots.size() != size)) return {Error::wrong_size};
 
-    tbb::combinable<TileWorker> workers;
+    Workers<TileWorker> workers;
     const Summary totals =
         for_each_tile(job, workers, whole_interval, [&](const TileWorker& worker, std::size_t first, std::size_t count) {
             std::memcpy(toi.data() + first, worker.scratch.time, count * sizeof(double));
@@ -35,8 +35,6 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
 struct CollectingWorker : TileWorker {
     std::vector<Contact> contacts;
     std::vector<std::size_t> invalid;
-
-    CollectingWorker() {}
 };
 
 /// Where the results of one tile lie in its worker.
@@ -55,12 +53,12 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
     // Each worker appends to its own lists; shares put them back in pair order.
     const std::size_t most = pairs_per_tile(pairs.source.size);
     std::vector<TileShare> shares((pairs.source.size + most - 1) / most);
-    tbb::combinable<CollectingWorker> workers;
+    Workers<CollectingWorker> workers;
     const Summary totals = for_each_tile(
-        job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t) {
+        job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t count) {
             TileShare& share = shares[first / most];
             share = {&worker, worker.contacts.size(), 0, worker.invalid.size(), 0};
-            for_each_bit(worker.scratch.reported, [&](std::size_t i) {
+            for_each_bit(worker.scratch.reported, count, [&](std::size_t i) {
                 const double t = worker.scratch.time[i];
                 if (std::isnan(t))
                     worker.invalid.push_back(first + i);
@@ -92,7 +90,7 @@ Status earliest(PairKind kind, const CheckedSource& pairs, const Options& option
     if (const Status status = prepare(kind, pairs, options, false, job); !status.ok()) return status;
 
     SharedBest best;
-    tbb::combinable<TileWorker> workers;
+    Workers<TileWorker> workers;
     const auto cutoff = [&](std::size_t first) { return best.cutoff(job, first); };
     Summary totals = for_each_tile(job, workers, cutoff, [&](TileWorker& worker, std::size_t, std::size_t) {
         best.offer(worker.totals.earliest);

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <new>
 
 #include <tbb/blocked_range.h>
+#include <tbb/cache_aligned_allocator.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -17,14 +20,44 @@ struct TileWorker {
     TileScratch scratch;
     Summary totals;
 
-    /// Written out, here and in what derives from it: otherwise oneTBB's T() would clear all of the scratch, which takes as long
-    /// as a hundred pairs. Kernels write before they read, but for this.
-    TileWorker()
-    {
-        scratch.dense = false;
-    }
+    /// Kernels write the scratch before they read it, but for this.
+    TileWorker() { scratch.dense = false; }
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);
+
+/// One worker per thread, made when it is first asked for. oneTBB clears what it holds for a thread, which for the scratch would
+/// take as long as a hundred pairs; so it holds a pointer.
+template <class Worker>
+class Workers {
+public:
+    Worker& local()
+    {
+        Owner& owner = owners.local();
+        if (owner == nullptr) owner.reset(::new (Memory{}.allocate(1)) Worker);
+        return *owner;
+    }
+
+    template <class Visit>
+    void combine_each(Visit visit)
+    {
+        owners.combine_each([&](const Owner& owner) {
+            if (owner != nullptr) visit(*owner);
+        });
+    }
+
+private:
+    using Memory = tbb::cache_aligned_allocator<Worker>;
+    struct Release {
+        void operator()(Worker* worker) const
+        {
+            worker->~Worker();
+            Memory{}.deallocate(worker, 1);
+        }
+    };
+    using Owner = std::unique_ptr<Worker, Release>;
+
+    tbb::combinable<Owner> owners;
+};
 
 /// Of a call with `size` pairs. Few pairs are cut into smaller tiles, so that every thread gets its share of them.
 constexpr std::size_t pairs_per_tile(std::size_t size)
@@ -38,7 +71,7 @@ constexpr std::size_t pairs_per_tile(std::size_t size)
 /// calls consume(worker, first, count) after each, on the worker's thread.
 /// Tiles do not depend on the number of threads. One tile runs on the caller's thread without a task.
 template <class Worker, class Cutoff, class Consume>
-Summary for_each_tile(const Job& job, tbb::combinable<Worker>& workers, Cutoff cutoff, Consume consume)
+Summary for_each_tile(const Job& job, Workers<Worker>& workers, Cutoff cutoff, Consume consume)
 {
     const std::size_t size = job.source.size;
     const std::size_t most = pairs_per_tile(size), tiles = (size + most - 1) / most;

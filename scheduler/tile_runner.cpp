@@ -136,8 +136,8 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
     for (std::uint64_t& word : scratch.is_unproven) word = 0;
     if (job.kernels != nullptr) {
         job.kernels->run_tile({job.kind, &job.source, first, count, &job.parameters, cutoff}, scratch);
-        for_each_bit(scratch.reported, [&](std::size_t i) { scratch.time[i] = job.parameters.time(scratch.time[i]); });
-        for_each_bit(scratch.is_undecided, [&](std::size_t i) {
+        for_each_bit(scratch.reported, count, [&](std::size_t i) { scratch.time[i] = job.parameters.time(scratch.time[i]); });
+        for_each_bit(scratch.is_undecided, count, [&](std::size_t i) {
             search_pair(job, first, i, cutoff, scratch);
             ++totals.scalar_pairs;
         });
@@ -147,7 +147,7 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
         totals.scalar_pairs += count;
     }
 
-    for_each_bit(scratch.reported, [&](std::size_t i) {
+    for_each_bit(scratch.reported, count, [&](std::size_t i) {
         if (std::isnan(scratch.time[i])) {
             ++totals.invalid;
             return;

@@ -31,11 +31,11 @@ scalar::SearchResult answer_pair(const Job& job, const double* coordinates, doub
 /// cutoff t_max may be left out.
 void run_tile(const Job& job, std::size_t first, std::size_t count, double cutoff, TileScratch& scratch, Summary& totals);
 
-/// Calls visit(i) for each set bit, in order.
+/// Calls visit(i) for each set bit of a tile of `count` pairs, in order.
 template <class Visit>
-void for_each_bit(const std::uint64_t (&words)[tile_pairs / 64], Visit visit)
+void for_each_bit(const std::uint64_t (&words)[tile_pairs / 64], std::size_t count, Visit visit)
 {
-    for (std::size_t w = 0; w < tile_pairs / 64; ++w)
+    for (std::size_t w = 0; w < (count + 63) / 64; ++w)
         for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1)
             visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
 }
