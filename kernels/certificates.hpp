@@ -62,6 +62,13 @@ FASTCCD_INLINE AxisGap<L> axis_gap(const AxisComponents<L>& c)
     }
 }
 
+/// Strictly apart along an axis, in one order, over an interval with these gaps at its ends.
+template <class L>
+FASTCCD_INLINE LaneMask<L> separated(const AxisGap<L>& start, const AxisGap<L>& end, L bound)
+{
+    return less(bound, min(start.above, end.above)) | less(max(start.below, end.below), broadcast<L>(0.0) - bound);
+}
+
 template <class L>
 struct LinearCertificate {
     LaneMask<L> apart;
@@ -76,8 +83,7 @@ FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>
     const AxisGap<L> s = axis_gap<kind>(start), e = axis_gap<kind>(end);
     const L zero = broadcast<L>(0.0);
     const L extent = max(max(s.largest, e.largest), zero - min(s.smallest, e.smallest));
-    const L bound = broadcast<L>(bounds.linear) * extent;
-    return {less(bound, min(s.above, e.above)) | less(max(s.below, e.below), zero - bound), extent};
+    return {separated(s, e, broadcast<L>(bounds.linear) * extent), extent};
 }
 
 /// All axes at once; the extents come with it for free.

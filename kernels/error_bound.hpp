@@ -110,8 +110,8 @@ struct ErrorBounds {
     /// Bounds for certificates on a part [a, b] alone (earliest contact, quarters), by which lanes may conclude that the certified
     /// search finds every interval in [a, b] apart. The ends of the motion are interpolated: their components err by rho + 3
     /// times u X where X bounds both ends of the whole motion. Added is what the search's coefficients err by and its bound, together
-    /// twice its bound; for the sum of three cross products the search's bound refers to at most four times the area. A gap errs in the lanes as it does
-    /// in the search, by linear_on_interval().
+    /// twice its bound; for the sum of three cross products the search's bound refers to at most four times the area. A gap
+    /// errs by linear_on_interval() in the lanes as it does in the search; with the search's bound, which is that too, three times.
     [[nodiscard]] FASTCCD_INLINE constexpr CertificateBounds on_part() const
     {
         const double end_rho = rho + 3;

@@ -63,9 +63,7 @@ FASTCCD_INLINE LaneMask<L> separated_on(const PairCoefficients& pair, L a, L b)
         return axis_gap<kind, L>({at(0), at(1), at(2)});
     };
     const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
-        const AxisGap<L> first = gap(axis, a), last = gap(axis, b);
-        return less(broadcast<L>(pair.gap_bound[axis]), min(first.above, last.above)) |
-               less(max(first.below, last.below), broadcast<L>(-pair.gap_bound[axis]));
+        return separated(gap(axis, a), gap(axis, b), broadcast<L>(pair.gap_bound[axis]));
     };
     return along(0) | along(1) | along(2);
 }

@@ -71,9 +71,10 @@ inline constexpr std::size_t boxes_ahead = 32;
 
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {
-    /// First time of contact: from the lanes the parameter s, in the end toi; +infinity if there is none.
+    /// First time of contact: from the lanes the parameter s, in the end toi; +infinity if there is none. Here and in `roots`, lanes
+    /// without a contact write past the last pair.
     alignas(64) double time[tile_pairs + most_lanes];
-    std::uint8_t roots[tile_pairs + most_lanes];  ///< Contact roots. Past the last pair: where lanes without a contact write.
+    std::uint8_t roots[tile_pairs + most_lanes];  ///< Contact roots.
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
@@ -116,7 +117,7 @@ struct KernelTable {
     /// Fills time, roots, reported and is_undecided of the scratch. What the lanes found of an undecided pair is to
     /// be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
-    /// For the certified search of one pair.
+    /// For the certified search of one pair; null if intervals are better looked at one by one.
     IntervalKernel intervals;
 };
 

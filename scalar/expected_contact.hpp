@@ -38,6 +38,8 @@ public:
     }
 
 private:
+    static constexpr double none_yet = -1.0;  ///< Before any time.
+
     /// The value next to zero that a search coming from `value` meets first.
     [[nodiscard]] double level(double value) const { return min(max(value, -bound), bound); }
 
@@ -45,9 +47,10 @@ private:
     {
         const double low = pieces.time[k], high = pieces.time[k + 1], zero = level(pieces.value[k]);
         if (zero == pieces.value[k]) return low;
-        if ((pieces.value[k] < zero) == (pieces.value[k + 1] < zero)) return -1.0;
+        if ((pieces.value[k] < zero) == (pieces.value[k + 1] < zero)) return none_yet;
         PowerCubic<double> f = pieces.f;
         f.c0 -= zero;
+        // One step more than before roots are decided quickly: parts of leaves need the last digits, too.
         double s = 0.5 * (low + high);
         for (int step = 0; step < quick_steps + 1; ++step) s = clipped_step(f, Bracket<double>{low, high}, s);
         return s;
@@ -56,7 +59,7 @@ private:
     double bound;
     MonotonePieces<double> pieces;
     int next_piece = 0;
-    double time = -1.0;
+    double time = none_yet;
 };
 
 }  // namespace fastccd::scalar

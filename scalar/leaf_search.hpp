@@ -62,7 +62,7 @@ public:
         if (contact_proven(leaf_of_answer)) return Proof::leaf;
         for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
             const Interval around{std::max(s - reach, 0.0), std::min(s + reach, 1.0)};
-            if (!pair.included(around)) return Proof::none;  // nor in anything wider
+            if (!pair.included(around)) return Proof::none;  // nor, but for rounding, in anything wider
             if (sign_changes(around)) return Proof::nearby;
         }
         return Proof::none;

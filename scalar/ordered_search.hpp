@@ -17,11 +17,11 @@ namespace fastccd::scalar {
 template <PairKind kind>
 class OrderedSearch {
 public:
-    /// Without `lanes` intervals are looked at one at a time, and so they are with one or two: that would take longer.
+    /// Without `lanes`, or with a kernel that has none for intervals, they are looked at one at a time.
     OrderedSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& parameters, const IntervalKernel* lanes)
         : pair{polynomials}
     {
-        if (lanes == nullptr || lanes->lanes < 4) return;
+        if (lanes == nullptr || lanes->apart == nullptr) return;
         kernel = *lanes;
         expected.emplace(pair.coefficients(), parameters);
     }

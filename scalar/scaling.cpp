@@ -14,6 +14,9 @@ namespace {
 constexpr double smallest_unscaled = 0x1p-100;
 constexpr double largest_unscaled = largest_extent;
 
+/// An axis of this extent is left alone.
+bool is_unscaled(double extent) { return extent == 0.0 || (extent >= smallest_unscaled && extent <= largest_unscaled); }
+
 /// Multiplies the eight coordinates of one axis so that their differences have an extent near 1, if needed.
 /// Scaling down may round tiny coordinates to multiples of 2^-1074. Rounding is monotone, so no difference
 /// changes sign, and the error is far below u times the extent.
@@ -28,7 +31,7 @@ void scale_axis(double (&x)[8])
     double extent = 0.0;
     for (int end = 0; end < 8; end += 4)
         for (int point = 1; point < 4; ++point) extent = std::max(extent, std::abs(x[end + point] - x[end]));
-    if (extent == 0.0 || (extent >= smallest_unscaled && extent <= largest_unscaled)) return;
+    if (is_unscaled(extent)) return;
 
     // Differences are taken before scaling, so that a small difference of large coordinates keeps all its
     // digits; then x0 = 0 and x_i = r_i, which is the same relative motion.
@@ -39,36 +42,25 @@ void scale_axis(double (&x)[8])
     }
 }
 
-/// With points 0 and `origin` exchanged.
-RelativeMotion<double> unscaled_relative_motion(const double* coordinates, int origin)
-{
-    const auto point = [=](int i) { return coordinates + 3 * (i == 0 ? origin : i == origin ? 0 : i); };
-    const double* const start = point(0);
-    const auto relative = [&](int i, int end) {
-        const double *p = point(i) + 12 * end, *p0 = start + 12 * end;
-        return Vector3<double>{p[0] - p0[0], p[1] - p0[1], p[2] - p0[2]};
-    };
-    return {{relative(1, 0), relative(2, 0), relative(3, 0)}, {relative(1, 1), relative(2, 1), relative(3, 1)}};
-}
-
 }  // namespace
 
 RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin)
 {
-    if (t_max == 1.0) {
-        const RelativeMotion<double> r = unscaled_relative_motion(coordinates, origin);
-        const Extents<double> e = extents(r);
-        const auto needs_none = [](double extent) {
-            return extent == 0.0 || (extent >= smallest_unscaled && extent <= largest_unscaled);
-        };
-        if (needs_none(e.x) && needs_none(e.y) && needs_none(e.z)) return r;
+    double exchanged[24];
+    std::copy(coordinates, coordinates + 24, exchanged);
+    for (int k = 0; k < 3; ++k) {
+        std::swap(exchanged[k], exchanged[3 * origin + k]);
+        std::swap(exchanged[12 + k], exchanged[12 + 3 * origin + k]);
     }
+
+    // As for most pairs. Coordinates beyond 2^1021 have differences of 0 or far too large ones, halved or not.
+    const Extents<double> e = extents(relative_motion<double>(exchanged, 1, 1.0));
+    if (is_unscaled(e.x) && is_unscaled(e.y) && is_unscaled(e.z)) return relative_motion<double>(exchanged, 1, t_max);
+
     double scaled[24];
     for (int axis = 0; axis < 3; ++axis) {
         double x[8];
-        for (int k = 0; k < 8; ++k) x[k] = coordinates[3 * k + axis];
-        std::swap(x[0], x[origin]);
-        std::swap(x[4], x[4 + origin]);
+        for (int k = 0; k < 8; ++k) x[k] = exchanged[3 * k + axis];
         scale_axis(x);
         for (int k = 0; k < 8; ++k) scaled[3 * k + axis] = x[k];
     }

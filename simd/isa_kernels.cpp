@@ -29,24 +29,35 @@ void run_kernel_tile(const TileRequest& request, TileScratch& scratch)
         run_tile<KernelLane>(request, scratch);
 }
 
-template <PairKind kind>
+template <PairKind kind, class L>
 unsigned apart_on_lanes(const PairCoefficients& pair, const double* starts, const double* ends, bool by_area)
 {
-    const KernelLane a = Lane<KernelLane>::load(starts), b = Lane<KernelLane>::load(ends);
-    const LaneMask<KernelLane> apart = apart_on<kind>(pair, a, b);
-    return Lane<KernelLane>::bits(by_area ? apart | apart_by_area_on<kind>(pair, a, b) : apart);
+    const L a = Lane<L>::load(starts), b = Lane<L>::load(ends);
+    const LaneMask<L> apart = apart_on<kind>(pair, a, b);
+    return Lane<L>::bits(by_area ? apart | apart_by_area_on<kind>(pair, a, b) : apart);
 }
 
+template <class L>
 unsigned apart_on_intervals(const PairCoefficients& pair, const double* starts, const double* ends, bool by_area)
 {
-    return pair.kind == PairKind::vertex_face ? apart_on_lanes<PairKind::vertex_face>(pair, starts, ends, by_area)
-                                              : apart_on_lanes<PairKind::edge_edge>(pair, starts, ends, by_area);
+    return pair.kind == PairKind::vertex_face ? apart_on_lanes<PairKind::vertex_face, L>(pair, starts, ends, by_area)
+                                              : apart_on_lanes<PairKind::edge_edge, L>(pair, starts, ends, by_area);
+}
+
+/// With two lanes, a search that foresees takes as long as one that asks for one interval at a time, or longer.
+template <class L>
+constexpr IntervalKernel interval_kernel()
+{
+    if constexpr (Lane<L>::width < 4)
+        return {Lane<L>::width, nullptr};
+    else
+        return {Lane<L>::width, apart_on_intervals<L>};
 }
 
 }  // namespace
 
 extern const KernelTable table;
 const KernelTable table{Isa::FASTCCD_KERNEL_ISA, Lane<KernelLane>::width, run_kernel_tile,
-                        {Lane<KernelLane>::width, apart_on_intervals}};
+                        interval_kernel<KernelLane>()};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

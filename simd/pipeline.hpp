@@ -11,13 +11,15 @@
 //                                                                                  v
 //                                                                           contact or apart
 //
+// Before a pair is left undecided by the search for its roots, all certificates are tried on quarters of the step.
+//
 // Queues pack what a stage leaves, so that the next one runs on full batches. Where few pairs are left, their coordinates are
 // copied one by one; where most are, whole registers are compressed, and [screened] is left out.
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
-//   sign tests cover [0, 1] by intervals that overlap by at least one leaf, or by its halves, which
-//   no leaf straddles (see error_bound.hpp);
+//   sign tests cover [0, 1] by intervals that overlap by at least one leaf, or by its halves or quarters,
+//   which no leaf straddles (see error_bound.hpp);
 // - "contact in leaf j" is concluded only from a proof (a strict sign change of the cubic over the leaf and
 //   strict inclusion throughout it), so that no certificate of absence can hold there, together with
 //   "apart" for everything before it.
