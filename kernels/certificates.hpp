@@ -66,7 +66,7 @@ FASTCCD_INLINE AxisGap<L> axis_gap(const AxisComponents<L>& c)
 template <class L>
 FASTCCD_INLINE LaneMask<L> separated(const AxisGap<L>& start, const AxisGap<L>& end, L bound)
 {
-    return less(bound, min(start.above, end.above)) | less(max(start.below, end.below), broadcast<L>(0.0) - bound);
+    return less(bound, min(start.above, end.above)) | less(max(start.below, end.below), negated(bound));
 }
 
 template <class L>
@@ -81,8 +81,7 @@ FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>
                                                          const CertificateBounds& bounds)
 {
     const AxisGap<L> s = axis_gap<kind>(start), e = axis_gap<kind>(end);
-    const L zero = broadcast<L>(0.0);
-    const L extent = max(max(s.largest, e.largest), zero - min(s.smallest, e.smallest));
+    const L extent = max(max(s.largest, e.largest), negated(min(s.smallest, e.smallest)));
     return {separated(s, e, broadcast<L>(bounds.linear) * extent), extent};
 }
 
@@ -102,14 +101,18 @@ FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const 
     return x.apart | y.apart | z.apart;
 }
 
+/// All four beyond the bound (not negative) on one side. Their signs are compared as bits, so that minima are enough.
+template <class L>
+FASTCCD_INLINE LaneMask<L> one_sign(L a, L b, L c, L d, L bound)
+{
+    return less(bound, min(min(abs(a), times_sign(b, a)), min(times_sign(c, a), times_sign(d, a))));
+}
+
 /// Never coplanar: all four coefficients beyond the bound on one side.
 template <class L>
 FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const CertificateBounds& bounds)
 {
-    const L bound = broadcast<L>(bounds.cubic) * volume;
-    const L low = min(min(f.start, f.end), min(f.thrice_second, f.thrice_third));
-    const L high = max(max(f.start, f.end), max(f.thrice_second, f.thrice_third));
-    return less(bound, low) | less(high, broadcast<L>(0.0) - bound);
+    return one_sign(f.start, f.thrice_second, f.thrice_third, f.end, broadcast<L>(bounds.cubic) * volume);
 }
 
 /// The sign of a function over an interval: above `smallest`, below `largest`.
@@ -134,13 +137,12 @@ template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> apart_in_projection(const SignRange<L>& p, const SignRange<L>& q, const SignRange<L>& t,
                                                const SignRange<L>& s, L bound, L bound_sum)
 {
-    const L zero = broadcast<L>(0.0);
     if constexpr (kind == PairKind::vertex_face) {
         return less(bound, max(p.smallest, q.smallest, t.smallest)) &
-               less(min(p.largest, q.largest, t.largest), zero - bound);
+               less(min(p.largest, q.largest, t.largest), negated(bound));
     } else {
-        return less(bound, min(p.smallest, t.smallest)) | less(max(p.largest, t.largest), zero - bound) |
-               less(bound_sum, min(q.smallest, s.smallest)) | less(max(q.largest, s.largest), zero - bound_sum);
+        return less(bound, min(p.smallest, t.smallest)) | less(max(p.largest, t.largest), negated(bound)) |
+               less(bound_sum, min(q.smallest, s.smallest)) | less(max(q.largest, s.largest), negated(bound_sum));
     }
 }
 
@@ -180,14 +182,14 @@ FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, co
            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy);
 }
 
-/// True where the coordinates are finite and their differences within the lanes' range. Every
-/// component of every r_i is a factor of f0 or f3, and a product with a NaN or an infinity is one,
-/// so f0 and f3 are finite only if all input is.
+/// True where the coordinates are finite and their differences within the lanes' range. Extents below
+/// that range are of finite r_i, unless one is NaN, which maxima may lose; but every component of every r_i
+/// is a factor of f0 or f3, and then their sum is NaN, the only number not at most itself.
 template <class L>
 FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e, const ErrorBounds& bounds)
 {
-    return less(abs(f.start) + abs(f.end), broadcast<L>(largest_extent * largest_extent * largest_extent * 16)) &
-           less(max(e.x, e.y, e.z), broadcast<L>(bounds.largest_lane_extent));
+    const L sum = f.start + f.end;
+    return less_equal(sum, sum) & less(max(e.x, e.y, e.z), broadcast<L>(bounds.largest_lane_extent));
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -42,14 +42,6 @@ FASTCCD_INLINE HalvedCubic<L> halved(const CoplanarityCubic<L>& f)
     return {{f.start, a, a + b, middle}, {middle, b + c, c, f.end}};
 }
 
-/// All four coefficients beyond the bound on one side.
-template <class L>
-FASTCCD_INLINE LaneMask<L> one_sign(const L (&f)[4], L bound)
-{
-    return less(bound, min(min(f[0], f[1]), min(f[2], f[3]))) |
-           less(max(max(f[0], f[1]), max(f[2], f[3])), broadcast<L>(0.0) - bound);
-}
-
 /// Apart on the first half of the interval, and on the second.
 template <class L>
 struct ApartOnHalves {
@@ -65,7 +57,8 @@ FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f,
 {
     const HalvedCubic<L> cubic = halved(f);
     const L volume_bound = broadcast<L>(bounds.cubic) * scale.volume;
-    LaneMask<L> first = one_sign(cubic.first, volume_bound), second = one_sign(cubic.second, volume_bound);
+    const auto never_coplanar = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(c[0], c[1], c[2], c[3], volume_bound); };
+    LaneMask<L> first = never_coplanar(cubic.first), second = never_coplanar(cubic.second);
 
     const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
         const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {

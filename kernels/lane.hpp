@@ -3,7 +3,7 @@
 // Every kernel is one template on a lane type L: `double` (one pair) or `xsimd::batch<double, A>`
 // (several pairs side by side). Only + - * / and square root, all correctly rounded by IEEE 754,
 // comparisons, and the min / max below may decide a result: that is what makes the results the
-// same bits for every L. There is no fused multiply-add (contraction is switched off by the build).
+// same bits for every L. Nothing is contracted (the build switches that off): no product loses its rounding.
 //
 // All kernels live in a namespace of their own per instruction set: two translation units compiled
 // with different instruction sets must never emit the same inline function, because the linker
@@ -52,6 +52,10 @@ struct Lane<double> {
     static FASTCCD_INLINE double min(double a, double b) { return a < b ? a : b; }
     static FASTCCD_INLINE double max(double a, double b) { return a > b ? a : b; }
     static FASTCCD_INLINE double abs(double a) { return __builtin_fabs(a); }
+    static FASTCCD_INLINE double negated(double a) { return -a; }
+    static FASTCCD_INLINE double times_sign(double a, double b) { return __builtin_signbit(b) ? -a : a; }
+    /// a - b, on whichever units have less to do elsewhere.
+    static FASTCCD_INLINE double difference(double a, double b) { return a - b; }
     static FASTCCD_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
     static FASTCCD_INLINE double select(Mask m, double yes, double no) { return m.value ? yes : no; }
 
@@ -132,6 +136,18 @@ template <class L>
 FASTCCD_INLINE L abs(L a)
 {
     return Lane<L>::abs(a);
+}
+/// -a, by its sign bit: most processors have more units for that than for sums.
+template <class L>
+FASTCCD_INLINE L negated(L a)
+{
+    return Lane<L>::negated(a);
+}
+/// a with its sign bit changed where b has one.
+template <class L>
+FASTCCD_INLINE L times_sign(L a, L b)
+{
+    return Lane<L>::times_sign(a, b);
 }
 template <class L>
 FASTCCD_INLINE L sqrt(L a)

@@ -41,7 +41,8 @@ FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int 
         return Lane<L>::load(coordinates + (12 * end + 3 * point + axis) * stride);
     };
     const auto relative = [&](int end, int i) FASTCCD_INLINE_LAMBDA {
-        return Vector3<L>{at(end, i, 0) - at(end, 0, 0), at(end, i, 1) - at(end, 0, 1), at(end, i, 2) - at(end, 0, 2)};
+        const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA { return Lane<L>::difference(at(end, i, axis), at(end, 0, axis)); };
+        return Vector3<L>{along(0), along(1), along(2)};
     };
     RelativeMotion<L> r{{relative(0, 1), relative(0, 2), relative(0, 3)}, {relative(1, 1), relative(1, 2), relative(1, 3)}};
     if (t_max != 1.0) {

@@ -52,6 +52,12 @@ struct Lane<Array8> {
     static Array8 min(Array8 a, Array8 b) { return each<Array8>([&](int i) { return One::min(a.value[i], b.value[i]); }); }
     static Array8 max(Array8 a, Array8 b) { return each<Array8>([&](int i) { return One::max(a.value[i], b.value[i]); }); }
     static Array8 abs(Array8 a) { return each<Array8>([&](int i) { return std::fabs(a.value[i]); }); }
+    static Array8 negated(Array8 a) { return each<Array8>([&](int i) { return -a.value[i]; }); }
+    static Array8 times_sign(Array8 a, Array8 b)
+    {
+        return each<Array8>([&](int i) { return std::signbit(b.value[i]) ? -a.value[i] : a.value[i]; });
+    }
+    static Array8 difference(Array8 a, Array8 b) { return a - b; }
     static Array8 sqrt(Array8 a) { return each<Array8>([&](int i) { return std::sqrt(a.value[i]); }); }
     static Array8 select(Mask m, Array8 yes, Array8 no) { return each<Array8>([&](int i) { return m.value[i] ? yes.value[i] : no.value[i]; }); }
     static Mask less(Array8 a, Array8 b) { return each<Mask>([&](int i) { return a.value[i] < b.value[i]; }); }
