@@ -30,11 +30,18 @@ struct LaneQueue {
     alignas(64) double data[fields][capacity];
     unsigned size;
 };
-/// Coordinates of pairs, in the order of PairView, and the pair: a block of many lanes.
-using ScreenedQueue = LaneQueue<25>;
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<19>;
 using RootQueue = LaneQueue<22>;
+/// Pairs that screening leaves, one after another: vertex records x y z x' y' z' . . of their points x0 .. x3, and their numbers.
+/// A structure of arrays would take a cache line for each of the 24 coordinates of a pair.
+struct ScreenedQueue {
+    static constexpr unsigned capacity = LaneQueue<1>::capacity;
+
+    alignas(64) double records[capacity][4][8];
+    alignas(64) double numbers[capacity];
+    unsigned size;
+};
 /// With a minimum separation: fields of SeparationRecord, before and after its first look.
 struct SeparationQueue : LaneQueue<22> {};
 struct AdvancingQueue : LaneQueue<35> {};

@@ -132,14 +132,14 @@ FASTCCD_INLINE std::size_t list_pairs(const TileRequest& tile, std::uint16_t* li
     return size;
 }
 
-/// Whole vertex records, transposed in registers.
-template <class Batch>
-FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pairs], double* block)
+/// Whole vertex records of `lanes` pairs, transposed in registers to [24][lanes].
+template <class Batch, std::size_t lanes>
+FASTCCD_INLINE void transpose_block(const double* const (&records)[4][lanes], double* block)
 {
-    for (unsigned lane = 0; lane < block_pairs; lane += Lane<Batch>::transposed_records)
+    for (std::size_t lane = 0; lane < lanes; lane += Lane<Batch>::transposed_records)
         for (std::size_t point = 0; point < 4; ++point)
-            Lane<Batch>::transpose_records(&records[point][lane], block + 3 * point * block_pairs + lane,
-                                           block + (12 + 3 * point) * block_pairs + lane, block_pairs);
+            Lane<Batch>::transpose_records(&records[point][lane], block + 3 * point * lanes + lane,
+                                           block + (12 + 3 * point) * lanes + lane, lanes);
 }
 
 /// Asks for packed pairs ahead of the block being read, and nowhere else: in the later stages it only takes time. The loop is

@@ -114,10 +114,15 @@ private:
         for (; kept != 0; kept &= kept - 1) {
             const auto i = static_cast<unsigned>(__builtin_ctzll(kept));
             const double* const from = blocks[i / block_pairs] + i % block_pairs;
-            double* const to = &queue.data[0][queue.size++];
-#pragma GCC unroll 24
-            for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * ScreenedQueue::capacity] = from[c * block_pairs];
-            to[pair_coordinates * ScreenedQueue::capacity] = static_cast<double>(source.number(first + i));
+            auto& to = queue.records[queue.size];
+#pragma GCC unroll 4
+            for (std::size_t point = 0; point < 4; ++point)
+#pragma GCC unroll 3
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    to[point][axis] = from[(3 * point + axis) * block_pairs];
+                    to[point][3 + axis] = from[(12 + 3 * point + axis) * block_pairs];
+                }
+            queue.numbers[queue.size++] = static_cast<double>(source.number(first + i));
         }
     }
 
@@ -165,10 +170,15 @@ private:
         while (queue.size >= width || (all && queue.size > 0)) {
             const unsigned count = queue.size < width ? queue.size : width;
             queue.size -= count;
+            const double* records[4][width];
+            for (unsigned lane = 0; lane < width; ++lane)
+                for (unsigned point = 0; point < 4; ++point) records[point][lane] = queue.records[queue.size + lane][point];
+            alignas(64) double block[pair_coordinates * width];
+            transpose_block<L>(records, block);
             PairRecord<L> record;
-            record.r = relative_motion<L>(&queue.data[0][queue.size], ScreenedQueue::capacity, parameters.t_max);
+            record.r = relative_motion<L>(block, width, parameters.t_max);
             compute_pair_again(record);
-            record.pair = Lane<L>::load(&queue.data[pair_coordinates][queue.size]);
+            record.pair = Lane<L>::load(&queue.numbers[queue.size]);
             examine(record, lanes_in_use<L>(count));
         }
     }
