@@ -103,31 +103,34 @@ TEST(Api, NoPairs)
 TEST(Api, InvalidPairsAreNamedAndTheOthersAnswered)
 {
     const auto clean = uniform_pairs(2000);
-    const Answer expected = answer(oracle::Kind::vertex_face, interleaved(clean), {});
-    for (const double poison : {not_a_number, infinity, -infinity}) {
-        auto pairs = clean;
-        std::vector<std::size_t> poisoned;
-        for (std::size_t c = 0; c < pair_coordinates; ++c) {  // every coordinate once, in changing lanes
-            const std::size_t i = 13 * c + c % 8;
-            pairs[i][c / 3][c % 3] = poison;
-            poisoned.push_back(i);
-        }
-        for (const Isa isa : isas_to_test()) {
-            Options options;
-            options.isa = isa;
-            const Answer found = answer(oracle::Kind::vertex_face, interleaved(pairs), options);
-            std::vector<Contact> contacts;
-            std::vector<std::size_t> invalid;
-            ASSERT_TRUE(find_contacts(PairKind::vertex_face, interleaved(pairs), options, contacts, &invalid).ok());
-            EXPECT_EQ(invalid, poisoned) << name(isa) << ' ' << poison;
-            EXPECT_EQ(found.summary.invalid, poisoned.size());
-            std::size_t next = 0;
-            for (std::size_t i = 0; i < pairs.size(); ++i) {
-                if (next < poisoned.size() && poisoned[next] == i) {
-                    EXPECT_TRUE(std::isnan(found.toi[i])) << i;
-                    ++next;
-                } else {
-                    EXPECT_EQ(found.toi[i], expected.toi[i]) << i;
+    for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        const Answer expected = answer(kind, interleaved(clean), {});
+        for (const double poison : {not_a_number, infinity, -infinity}) {
+            auto pairs = clean;
+            std::vector<std::size_t> poisoned;
+            for (std::size_t round = 0; round < 6; ++round)
+                for (std::size_t c = 0; c < pair_coordinates; ++c) {  // every coordinate once, in changing lanes
+                    const std::size_t i = 320 * round + 13 * c + (c + round) % 8;
+                    pairs[i][c / 3][c % 3] = poison;
+                    poisoned.push_back(i);
+                }
+            for (const Isa isa : isas_to_test()) {
+                Options options;
+                options.isa = isa;
+                const Answer found = answer(kind, interleaved(pairs), options);
+                std::vector<Contact> contacts;
+                std::vector<std::size_t> invalid;
+                ASSERT_TRUE(find_contacts(pair_kind(kind), interleaved(pairs), options, contacts, &invalid).ok());
+                EXPECT_EQ(invalid, poisoned) << name(isa) << ' ' << poison;
+                EXPECT_EQ(found.summary.invalid, poisoned.size());
+                std::size_t next = 0;
+                for (std::size_t i = 0; i < pairs.size(); ++i) {
+                    if (next < poisoned.size() && poisoned[next] == i) {
+                        EXPECT_TRUE(std::isnan(found.toi[i])) << i;
+                        ++next;
+                    } else {
+                        EXPECT_EQ(found.toi[i], expected.toi[i]) << i;
+                    }
                 }
             }
         }

@@ -106,6 +106,8 @@ mutant 'change of edge functions = 0' kernels/projected_inclusion.hpp 's/broadca
 # ---- Certificates of the whole interval loosened
 certificates=kernels/certificates.hpp
 mutant 'cubic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.cubic\) \* volume/broadcast<L>(0.0) * volume/' certificates_test truth_test
+mutant 'cubic certificate: one coefficient of either sign' $certificates 's/times_sign\(d, a\)/abs(d)/' certificates_test truth_test
+mutant 'lanes: NaN in range' $certificates 's/less_equal\(sum, sum\) & //' api_test
 mutant 'quadratic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test
 mutant 'sum of edge functions by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test stress
 mutant 'linear certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.linear\) \* extent/broadcast<L>(0.0) * extent/' certificates_test truth_test stress
