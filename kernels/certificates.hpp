@@ -182,7 +182,7 @@ FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, co
            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy);
 }
 
-/// True where the coordinates are finite and their differences within the lanes' range. Extents below
+/// True where the coordinates are finite and their differences within the lanes' range. Extents in
 /// that range are of finite r_i, unless one is NaN, which maxima may lose; but every component of every r_i
 /// is a factor of f0 or f3, and then their sum is NaN, the only number not at most itself.
 template <class L>

@@ -137,7 +137,8 @@ FASTCCD_INLINE L abs(L a)
 {
     return Lane<L>::abs(a);
 }
-/// -a, by its sign bit: most processors have more units for that than for sums.
+/// -a, by its sign bit: most processors have more units for that than for sums. Not `neg`: xsimd has one, which would be found
+/// first, and it subtracts from 0.
 template <class L>
 FASTCCD_INLINE L negated(L a)
 {

@@ -172,7 +172,7 @@ struct BatchTraits<xsimd::avx512bw> : WideBoxes {
     static FASTCCD_INLINE __m512d max(__m512d a, __m512d b) { return _mm512_max_pd(a, b); }
     /// 1 a - b by the units that multiply: one rounding of a - b, signs of zeros included, so the same bits. Sums, minima and
     /// comparisons are more than half of a screening, and AMD's family 26 does all of them on two of its four units, products on the
-    /// other two. Intel's do either on any; where minima are done beside products, this gains nothing.
+    /// other two. Intel's do either on any; where minima are done beside products, this gains nothing and may cost.
     static FASTCCD_INLINE __m512d difference(__m512d a, __m512d b) { return _mm512_fmsub_pd(a, _mm512_set1_pd(1.0), b); }
     static constexpr unsigned transposed_records = 8;
     static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
