@@ -33,12 +33,11 @@ struct LaneQueue {
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<19>;
 using RootQueue = LaneQueue<22>;
-/// Pairs that screening leaves, one after another: vertex records x y z x' y' z' . . of their points x0 .. x3, and their numbers.
-/// A structure of arrays would take a cache line for each of the 24 coordinates of a pair.
+/// Pairs that screening leaves: where the first of their coordinates lies, the others in steps of block_pairs, and their numbers.
 struct ScreenedQueue {
     static constexpr unsigned capacity = LaneQueue<1>::capacity;
 
-    alignas(64) double records[capacity][4][8];
+    const double* pairs[capacity];
     alignas(64) double numbers[capacity];
     unsigned size;
 };
@@ -94,8 +93,10 @@ struct TileScratch {
     Refinement refinement;
     SeparationQueue separating;  ///< With a minimum separation: pairs that no coordinate axis keeps apart.
     AdvancingQueue advancing;    ///< Pairs that the first look does not.
-    /// The blocks of a group in the native layout, where the input is not.
+    /// The blocks of a group in the native layout, where the input is not ...
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
+    /// ... and a block of the pairs that wait in `screened` while the next group takes their place.
+    alignas(64) double waiting[block_coordinates];
     alignas(64) double wide[block_coordinates];  ///< Records of floats, as doubles.
     /// Indexed pairs that their boxes do not keep apart, by their number in the tile; the last one again for the blocks after.
     std::uint16_t listed[tile_pairs + (indexed_ahead + 1) * block_pairs];

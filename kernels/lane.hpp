@@ -45,6 +45,8 @@ struct Lane<double> {
     static FASTCCD_INLINE double broadcast(double x) { return x; }
     static FASTCCD_INLINE double load(const double* p) { return *p; }
     static FASTCCD_INLINE void store(double* p, double x) { *p = x; }
+    /// from[i][offset] in lane i.
+    static FASTCCD_INLINE double collect(const double* const* from, std::size_t offset) { return from[0][offset]; }
     /// 0, 1, 2, ... : the number of each lane.
     static FASTCCD_INLINE double lane_number() { return 0.0; }
 

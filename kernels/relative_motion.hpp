@@ -32,16 +32,15 @@ FASTCCD_INLINE Vector3<L> position(const RelativeMotion<L>& r, int i, L s)
     return {lerp(r.start[i].x, r.end[i].x, s), lerp(r.start[i].y, r.end[i].y, s), lerp(r.start[i].z, r.end[i].z, s)};
 }
 
-/// From 24 coordinates at coordinates[c * stride + lane], in the order of PairView.
+/// From 24 coordinates in the order of PairView, at(c) the lanes of number c.
 /// t_max != 1 moves the end of the motion to t_max; error_bound.hpp accounts for that rounding.
-template <class L>
-FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int stride, double t_max)
+template <class L, class At>
+FASTCCD_INLINE RelativeMotion<L> relative_motion_of(const At& at, double t_max)
 {
-    const auto at = [=](int end, int point, int axis) FASTCCD_INLINE_LAMBDA {
-        return Lane<L>::load(coordinates + (12 * end + 3 * point + axis) * stride);
-    };
     const auto relative = [&](int end, int i) FASTCCD_INLINE_LAMBDA {
-        const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA { return Lane<L>::difference(at(end, i, axis), at(end, 0, axis)); };
+        const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
+            return Lane<L>::difference(at(12 * end + 3 * i + axis), at(12 * end + axis));
+        };
         return Vector3<L>{along(0), along(1), along(2)};
     };
     RelativeMotion<L> r{{relative(0, 1), relative(0, 2), relative(0, 3)}, {relative(1, 1), relative(1, 2), relative(1, 3)}};
@@ -50,6 +49,13 @@ FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int 
         r = {{r.start[0], r.start[1], r.start[2]}, {position(r, 0, end), position(r, 1, end), position(r, 2, end)}};
     }
     return r;
+}
+
+/// From coordinates[c * stride + lane].
+template <class L>
+FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int stride, double t_max)
+{
+    return relative_motion_of<L>([=](int c) FASTCCD_INLINE_LAMBDA { return Lane<L>::load(coordinates + c * stride); }, t_max);
 }
 
 /// Largest |component| per axis over r1, r2, r3 and both ends: the scale of every rounding error.

@@ -132,18 +132,29 @@ FASTCCD_INLINE std::size_t list_pairs(const TileRequest& tile, std::uint16_t* li
     return size;
 }
 
-/// Whole vertex records of `lanes` pairs, transposed in registers to [24][lanes].
-template <class Batch, std::size_t lanes>
-FASTCCD_INLINE void transpose_block(const double* const (&records)[4][lanes], double* block)
+/// Whole vertex records of 8 pairs, transposed in registers to [24][8].
+template <class Batch>
+FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pairs], double* block)
 {
-    for (std::size_t lane = 0; lane < lanes; lane += Lane<Batch>::transposed_records)
+    for (std::size_t lane = 0; lane < block_pairs; lane += Lane<Batch>::transposed_records)
         for (std::size_t point = 0; point < 4; ++point)
-            Lane<Batch>::transpose_records(&records[point][lane], block + 3 * point * lanes + lane,
-                                           block + (12 + 3 * point) * lanes + lane, lanes);
+            Lane<Batch>::transpose_records(&records[point][lane], block + 3 * point * block_pairs + lane,
+                                           block + (12 + 3 * point) * block_pairs + lane, block_pairs);
 }
 
-/// Asks for packed pairs ahead of the block being read, and nowhere else: in the later stages it only takes time. The loop is
-/// not unrolled, because lines are to be asked for slowly: in bursts they keep the core from going on (bench/README.md).
+/// Asks for memory from one address to another, line by line, and returns where it stopped (a function without a result would be
+/// taken for one without effect). Not inlined, and its loop not unrolled: lines that one and the same instruction asks for, in their
+/// order, are what the hardware's own prefetchers take up. Two instructions in turn are enough to lose them, and then half as many
+/// lines are under way (bench/README.md). Static, so that g++ sees which registers it leaves alone: all vectors.
+[[maybe_unused]] __attribute__((noinline)) static std::uintptr_t ask_for(std::uintptr_t next, std::uintptr_t end)
+{
+    constexpr std::uintptr_t line = 64;
+#pragma GCC unroll 1
+    for (; next < end; next += line) __builtin_prefetch(reinterpret_cast<const void*>(next));
+    return next;
+}
+
+/// Asks for packed pairs before they are read.
 class Prefetcher {
 public:
     FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first)
@@ -157,38 +168,50 @@ public:
             last_ = static_cast<std::ptrdiff_t>(source.size) - 1;
             return;
         }
-        const std::size_t pair = pair_coordinates * number;
-        const auto* const data = static_cast<const std::byte*>(pairs.data());
+        const std::size_t pair = pair_coordinates * number, all = source.size * pair;
+        if (all < most_ahead) return;
+        const auto data = reinterpret_cast<std::uintptr_t>(pairs.data());
+        last_start_ = data + all - most_ahead;
         next_ = data + first * pair;
-        end_ = data + source.size * pair;
+        rate_ = block_pairs * pair * 2 / 3;
     }
 
-    /// Before the block that starts at pair `i` of the source, at `address` unless the layout is strided, is read.
-    FASTCCD_INLINE void at_block(std::size_t i, const void* address)
+    /// Before the block at `address` is read. Memory answers at its own pace: more than it can deliver while a block is screened is
+    /// asked for only where it would not be there in time otherwise. The rest is asked for by meanwhile(), so that the rate is even.
+    FASTCCD_INLINE void at_block(const void* address)
     {
-        if (strided_ != nullptr) {
-            // Of three lanes for the x, y and z of a point, so that triples, of stride 3, get all of their three lines.
-            constexpr auto ahead = static_cast<std::ptrdiff_t>(bytes_ahead / (block_coordinates * sizeof(double)) * block_pairs);
-            for (std::size_t c = 0; c < pair_coordinates; ++c) {
-                const std::ptrdiff_t pair = static_cast<std::ptrdiff_t>(i) + ahead + 3 * static_cast<std::ptrdiff_t>(c % 3);
-                __builtin_prefetch(static_cast<const std::byte*>(strided_->data(c)) + element_ * (pair < last_ ? pair : last_));
-            }
-        } else if (end_ != nullptr) {
-            const auto* const at = static_cast<const std::byte*>(address);
-            const std::byte* const until = static_cast<std::size_t>(end_ - at) > bytes_ahead ? at + bytes_ahead : end_;
-            const std::byte* next = next_;
-#pragma GCC unroll 1
-            for (; next < until; next += line) __builtin_prefetch(next);
-            next_ = next;
+        auto at = reinterpret_cast<std::uintptr_t>(address);
+        at = at < last_start_ ? at : last_start_;
+        limit_ = at + most_ahead;
+        const std::uintptr_t needed = at + least_ahead, even = next_ + rate_;
+        ask_until(even < needed ? needed : even);
+    }
+    /// The same for the layout `strided`, before the block that starts at pair `i` of the source.
+    FASTCCD_INLINE void at_strided_block(std::size_t i)
+    {
+        // Of three lanes for the x, y and z of a point, so that triples, of stride 3, get all of their three lines.
+        constexpr auto ahead = static_cast<std::ptrdiff_t>(least_ahead / block_bytes * block_pairs);
+        for (std::size_t c = 0; c < pair_coordinates; ++c) {
+            const std::ptrdiff_t pair = static_cast<std::ptrdiff_t>(i) + ahead + 3 * static_cast<std::ptrdiff_t>(c % 3);
+            __builtin_prefetch(static_cast<const std::byte*>(strided_->data(c)) + element_ * (pair < last_ ? pair : last_));
         }
     }
 
-private:
-    static constexpr std::size_t line = 64;
-    static constexpr std::size_t bytes_ahead = 8 * block_coordinates * sizeof(double);  ///< 8 blocks of doubles.
+    /// Between blocks, before something that takes about as long as memory takes for a block.
+    FASTCCD_INLINE void meanwhile() { ask_until(next_ + block_bytes); }
 
-    const std::byte* next_ = nullptr;
-    const std::byte* end_ = nullptr;
+private:
+    static constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double);
+    /// How far ahead of the block being read pairs are asked for: 8 to 16 blocks of doubles. With more, lines leave the first-level
+    /// cache again before they are read.
+    static constexpr std::uintptr_t least_ahead = 8 * block_bytes, most_ahead = 2 * least_ahead;
+
+    FASTCCD_INLINE void ask_until(std::uintptr_t until) { next_ = ask_for(next_, until < limit_ ? until : limit_); }
+
+    // Addresses. All zero: nothing is asked for.
+    std::uintptr_t next_ = 0, limit_ = 0;
+    std::uintptr_t last_start_ = 0;  ///< most_ahead before the end.
+    std::uintptr_t rate_ = 0;        ///< Bytes a block.
     const PairView* strided_ = nullptr;
     std::ptrdiff_t element_ = 0, last_ = 0;  ///< Bytes from a pair's coordinate to the next one's; the last pair.
 };
@@ -203,13 +226,18 @@ public:
           size_{indexed_ ? list_pairs<Batch>(tile, scratch.listed) : tile.count},
           prefetcher_{*tile.source, tile.first}
     {
-        if (!indexed_ || size_ == 0) return;
-        for (std::size_t i = 0; i < indexed_ahead * block_pairs; i += block_pairs) resolve(i);
+        if (indexed_) {
+            if (size_ == 0) return;
+            for (std::size_t i = 0; i < indexed_ahead * block_pairs; i += block_pairs) resolve(i);
+        } else if (const PairView& pairs = *tile.source->view;
+                   pairs.layout() == PairView::Layout::blocked && pairs.scalar() == PairView::Scalar::float64) {
+            in_place_ = static_cast<const double*>(pairs.data()) + tile.first * pair_coordinates;
+        }
     }
 
     [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
 
-    /// Number in the tile of pair `i` of this source, and of the pairs from `i` on, in the block read last.
+    /// Number in the tile of pair `i` of this source, and of the pairs from `i` on, in the group read last.
     [[nodiscard]] FASTCCD_INLINE std::size_t number(std::size_t i) const { return indexed_ ? scratch_.listed[i] : i; }
     [[nodiscard]] FASTCCD_INLINE Batch numbers(std::size_t i) const
     {
@@ -217,15 +245,34 @@ public:
                         : broadcast<Batch>(static_cast<double>(i)) + Lane<Batch>::lane_number();
     }
 
-    /// The block that starts at pair `i`, a multiple of 8; the last pair stands for those past the end. Zero-copy for blocked
-    /// double; otherwise one of scratch.blocks is filled and returned. Blocks are to be read in order.
-    FASTCCD_INLINE const double* block(std::size_t i)
+    /// The blocks of the group that starts at pair `i`, a multiple of group_pairs, one after another; the last pair stands for those
+    /// past the end. Groups are to be read in order.
+    FASTCCD_INLINE const double* group(std::size_t i)
     {
-        return indexed_ ? transposed(i) : native(i);
+        if (is_in_place()) return in_place_ + i * pair_coordinates;
+        const std::size_t end = size_ - i < group_pairs ? size_ : i + group_pairs;
+        for (std::size_t k = i; k < end; k += block_pairs) {
+            double* const block = scratch_.blocks[(k - i) / block_pairs];
+            if (indexed_)
+                transpose(k, block);
+            else
+                pack(k, block);
+        }
+        return scratch_.blocks[0];
     }
 
+    /// Blocks are not copied and stay where they are; otherwise the next group takes the place of the last one.
+    [[nodiscard]] FASTCCD_INLINE bool is_in_place() const { return in_place_ != nullptr; }
+
+    /// Before a block of the group is read.
+    FASTCCD_INLINE void at_block(const double* block)
+    {
+        if (is_in_place()) prefetcher_.at_block(block);
+    }
+    /// Before a batch of a later stage.
+    FASTCCD_INLINE void meanwhile() { prefetcher_.meanwhile(); }
+
 private:
-    FASTCCD_INLINE double* filled(std::size_t i) { return scratch_.blocks[i / block_pairs % (group_pairs / block_pairs)]; }
     FASTCCD_INLINE auto& records(std::size_t i) { return scratch_.records[i / block_pairs % (indexed_ahead + 1)]; }
 
     FASTCCD_INLINE void resolve(std::size_t i)
@@ -238,28 +285,28 @@ private:
             resolve_pairs<kind, false>(source, pairs, scratch_.listed + i, records(i));
     }
 
-    FASTCCD_INLINE const double* transposed(std::size_t i)
+    FASTCCD_INLINE void transpose(std::size_t i, double* block)
     {
         resolve(i + indexed_ahead * block_pairs);
-        transpose_block<Batch>(records(i), filled(i));
+        transpose_block<Batch>(records(i), block);
         for (std::size_t lane = 0; lane < block_pairs; ++lane)
             scratch_.numbers[i % group_pairs + lane] = static_cast<double>(scratch_.listed[i + lane]);
-        return filled(i);
     }
 
-    FASTCCD_INLINE const double* native(std::size_t i)
+    FASTCCD_INLINE void pack(std::size_t i, double* block)
     {
         const PairView& pairs = *tile_.source->view;
         const std::size_t first = tile_.first + i, offset = first * pair_coordinates;
         const std::size_t count = size_ - i < block_pairs ? size_ - i : block_pairs;
         const bool wide = pairs.scalar() == PairView::Scalar::float64;
-        double* const block = filled(i);
         const auto* const doubles = static_cast<const double*>(pairs.data()) + offset;
         const auto* const floats = static_cast<const float*>(pairs.data()) + offset;
-        prefetcher_.at_block(first, wide ? static_cast<const void*>(doubles) : floats);
+        if (pairs.layout() == PairView::Layout::strided)
+            prefetcher_.at_strided_block(first);
+        else
+            prefetcher_.at_block(wide ? static_cast<const void*>(doubles) : floats);
         switch (pairs.layout()) {
-            case PairView::Layout::blocked:
-                if (wide) return doubles;
+            case PairView::Layout::blocked:  // of floats
                 widen_block(floats, block);
                 break;
             case PairView::Layout::interleaved:
@@ -275,13 +322,13 @@ private:
                     pack_strided<float>(pairs, first, count, block);
                 break;
         }
-        return block;
     }
 
     const TileRequest& tile_;
     TileScratch& scratch_;
     const bool indexed_;
     const std::size_t size_;
+    const double* in_place_ = nullptr;  ///< The tile's first block, if blocks are not copied.
     Prefetcher prefetcher_;
 };
 

@@ -29,6 +29,10 @@ FASTCCD_INLINE void transpose_two_records(const double* const* records, double* 
 template <>
 struct BatchTraits<xsimd::sse2> {
     static FASTCCD_INLINE unsigned bits(__m128d m) { return static_cast<unsigned>(_mm_movemask_pd(m)); }
+    static FASTCCD_INLINE __m128d collect(const double* const* from, std::size_t offset)
+    {
+        return _mm_set_pd(from[1][offset], from[0][offset]);
+    }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m128d x)
     {
         _mm_storeu_pd(p, bits == 2 ? _mm_unpackhi_pd(x, x) : x);
@@ -107,6 +111,10 @@ private:
 template <>
 struct BatchTraits<xsimd::avx2> : WideBoxes {
     static FASTCCD_INLINE unsigned bits(__m256d m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
+    static FASTCCD_INLINE __m256d collect(const double* const* from, std::size_t offset)
+    {
+        return _mm256_set_pd(from[3][offset], from[2][offset], from[1][offset], from[0][offset]);
+    }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m256d x)
     {
         const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[bits]));
@@ -161,6 +169,11 @@ FASTCCD_INLINE void transpose_eight_records(const double* const* records, double
 template <>
 struct BatchTraits<xsimd::avx512bw> : WideBoxes {
     static FASTCCD_INLINE unsigned bits(__mmask8 m) { return m; }
+    static FASTCCD_INLINE __m512d collect(const double* const* from, std::size_t offset)
+    {
+        return _mm512_set_pd(from[7][offset], from[6][offset], from[5][offset], from[4][offset], from[3][offset], from[2][offset],
+                             from[1][offset], from[0][offset]);
+    }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m512d x)
     {
         // A push moves some twenty registers by the same bits: the order once, then one permutation each. Compressing is two
@@ -188,6 +201,10 @@ struct BatchTraits<xsimd::neon64> {
     static FASTCCD_INLINE unsigned bits(uint64x2_t m)
     {
         return static_cast<unsigned>((vgetq_lane_u64(m, 0) & 1) | (vgetq_lane_u64(m, 1) & 2));
+    }
+    static FASTCCD_INLINE float64x2_t collect(const double* const* from, std::size_t offset)
+    {
+        return vcombine_f64(vld1_f64(from[0] + offset), vld1_f64(from[1] + offset));
     }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, float64x2_t x)
     {
@@ -236,6 +253,7 @@ struct Lane<xsimd::batch<double, A>> {
     static FASTCCD_INLINE Batch broadcast(double x) { return Batch(x); }
     static FASTCCD_INLINE Batch load(const double* p) { return Batch::load_unaligned(p); }
     static FASTCCD_INLINE void store(double* p, Batch x) { x.store_unaligned(p); }
+    static FASTCCD_INLINE Batch collect(const double* const* from, std::size_t offset) { return Traits::collect(from, offset); }
     static FASTCCD_INLINE Batch lane_number()
     {
         alignas(64) static constexpr double numbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};

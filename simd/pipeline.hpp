@@ -13,8 +13,8 @@
 //
 // Before a pair is left undecided by the search for its roots, all certificates are tried on quarters of the step.
 //
-// Queues pack what a stage leaves, so that the next one runs on full batches. Where few pairs are left, their coordinates are
-// copied one by one; where most are, whole registers are compressed, and [screened] is left out.
+// Queues pack what a stage leaves, so that the next one runs on full batches. Where few pairs are left, the queue says where
+// their coordinates are; where most are, whole registers are compressed, and [screened] is left out.
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
@@ -90,13 +90,15 @@ private:
     }
 
     /// For scenes, where most pairs end here: screens a group without looking at any result, which no branch predictor could
-    /// foresee, then copies the coordinates of what is left, pair by pair, to [screened].
+    /// foresee, then lists what is left in [screened]. Processors overlap one batch with the next only as far as a few hundred
+    /// instructions reach: there is nothing in the loop that could be done before or after it.
     void screen_group(std::size_t first, std::size_t count)
     {
-        const double* blocks[group_pairs / block_pairs];
+        const double* const blocks = source.group(first);
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
-            const double* const block = blocks[i / block_pairs] = source.block(first + i);
+            const double* const block = blocks + i * pair_coordinates;
+            source.at_block(block);
             for (unsigned lane = 0; lane < block_pairs; lane += width) {
                 PairRecord<L> record;
                 const Screening found = screen(block + lane, record);
@@ -112,16 +114,8 @@ private:
 
         ScreenedQueue& queue = scratch.screened;
         for (; kept != 0; kept &= kept - 1) {
-            const auto i = static_cast<unsigned>(__builtin_ctzll(kept));
-            const double* const from = blocks[i / block_pairs] + i % block_pairs;
-            auto& to = queue.records[queue.size];
-#pragma GCC unroll 4
-            for (std::size_t point = 0; point < 4; ++point)
-#pragma GCC unroll 3
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    to[point][axis] = from[(3 * point + axis) * block_pairs];
-                    to[point][3 + axis] = from[(12 + 3 * point + axis) * block_pairs];
-                }
+            const auto i = static_cast<std::size_t>(__builtin_ctzll(kept));
+            queue.pairs[queue.size] = blocks + i / block_pairs * block_coordinates + i % block_pairs;
             queue.numbers[queue.size++] = static_cast<double>(source.number(first + i));
         }
     }
@@ -129,9 +123,11 @@ private:
     /// Where most pairs go on: straight to the certificates on both halves, without a queue.
     void screen_dense_group(std::size_t first, std::size_t count)
     {
+        const double* const blocks = source.group(first);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
-            const double* const block = source.block(first + i);
+            const double* const block = blocks + i * pair_coordinates;
+            source.at_block(block);
             for (unsigned lane = 0; lane < block_pairs && i + lane < count; lane += width) {
                 PairRecord<L> record;
                 const Screening found = screen(block + lane, record);
@@ -170,16 +166,29 @@ private:
         while (queue.size >= width || (all && queue.size > 0)) {
             const unsigned count = queue.size < width ? queue.size : width;
             queue.size -= count;
-            const double* records[4][width];
-            for (unsigned lane = 0; lane < width; ++lane)
-                for (unsigned point = 0; point < 4; ++point) records[point][lane] = queue.records[queue.size + lane][point];
-            alignas(64) double block[pair_coordinates * width];
-            transpose_block<L>(records, block);
+            source.meanwhile();
+            const double* pairs[width];
+            for (unsigned lane = 0; lane < width; ++lane) pairs[lane] = queue.pairs[queue.size + (lane < count ? lane : 0)];
             PairRecord<L> record;
-            record.r = relative_motion<L>(block, width, parameters.t_max);
+            record.r = relative_motion_of<L>(
+                [&](int c) FASTCCD_INLINE_LAMBDA { return Lane<L>::collect(pairs, static_cast<std::size_t>(c) * block_pairs); },
+                parameters.t_max);
             compute_pair_again(record);
             record.pair = Lane<L>::load(&queue.numbers[queue.size]);
             examine(record, lanes_in_use<L>(count));
+        }
+        if (!source.is_in_place()) keep_waiting();
+    }
+
+    /// Copies what is left in [screened], less than a batch, before other blocks take its place: pair k to lane k of `waiting`.
+    void keep_waiting()
+    {
+        for (unsigned k = 0; k < scratch.screened.size; ++k) {
+            double* const to = scratch.waiting + k;
+            const double* const from = scratch.screened.pairs[k];
+            if (from == to) continue;
+            for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * block_pairs] = from[c * block_pairs];
+            scratch.screened.pairs[k] = to;
         }
     }
 

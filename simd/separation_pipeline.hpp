@@ -44,11 +44,16 @@ public:
         clear_results<L>(scratch, request.count);
         scratch.separating.size = scratch.advancing.size = 0;
         const std::size_t size = pipeline.source.size();
-        for (std::size_t i = 0; i < size; i += block_pairs) {
-            const double* const block = pipeline.source.block(i);
-            for (unsigned lane = 0; lane < block_pairs && i + lane < size; lane += width) {
-                pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use<L>(size - i - lane));
-                if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
+        for (std::size_t first = 0; first < size; first += group_pairs) {
+            const double* const blocks = pipeline.source.group(first);
+            const std::size_t end = size - first < group_pairs ? size : first + group_pairs;
+            for (std::size_t i = first; i < end; i += block_pairs) {
+                const double* const block = blocks + (i - first) * pair_coordinates;
+                pipeline.source.at_block(block);
+                for (unsigned lane = 0; lane < block_pairs && i + lane < end; lane += width) {
+                    pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use<L>(end - i - lane));
+                    if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
+                }
             }
         }
         pipeline.look_first(1);

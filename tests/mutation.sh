@@ -118,6 +118,7 @@ mutant 'one end point on one side (edge-edge)' $certificates 's/min\(p\.smallest
 
 halves=kernels/halves_certificate.hpp
 mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.second/apart.first | apart.second/' same_bits_test
+mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source\.is_in_place\(\)\) keep_waiting\(\);//' same_bits_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
 mutant 'halved edge functions by sign alone' $halves 's/bound = broadcast<L>\(bounds\.quadratic\) \* area/bound = broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test

@@ -48,6 +48,7 @@ struct Lane<Array8> {
     {
         for (int i = 0; i < 8; ++i) p[i] = x.value[i];
     }
+    static Array8 collect(const double* const* from, std::size_t offset) { return each<Array8>([&](int i) { return from[i][offset]; }); }
     static Array8 lane_number() { return each<Array8>([](int i) { return double(i); }); }
     static Array8 min(Array8 a, Array8 b) { return each<Array8>([&](int i) { return One::min(a.value[i], b.value[i]); }); }
     static Array8 max(Array8 a, Array8 b) { return each<Array8>([&](int i) { return One::max(a.value[i], b.value[i]); }); }
