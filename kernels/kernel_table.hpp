@@ -89,7 +89,7 @@ struct TileScratch {
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.
     RootSearch search;
-    RootQueue slow;          ///< Roots that few steps do not decide.
+    RootQueue slow;          ///< Roots that few steps do not decide, and those after a pair's first.
     Refinement refinement;
     SeparationQueue separating;  ///< With a minimum separation: pairs that no coordinate axis keeps apart.
     AdvancingQueue advancing;    ///< Pairs that the first look does not.

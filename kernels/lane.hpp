@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <fastccd/pair_view.hpp>
 #include <grid_box.hpp>
 
 #ifndef FASTCCD_KERNEL_NAMESPACE
@@ -45,8 +46,16 @@ struct Lane<double> {
     static FASTCCD_INLINE double broadcast(double x) { return x; }
     static FASTCCD_INLINE double load(const double* p) { return *p; }
     static FASTCCD_INLINE void store(double* p, double x) { *p = x; }
-    /// from[i][offset] in lane i.
-    static FASTCCD_INLINE double collect(const double* const* from, std::size_t offset) { return from[0][offset]; }
+    /// Coordinates of pairs from anywhere in blocks of the native layout: number c of the pair in lane i is pairs[i][c * block_pairs].
+    /// Every block begins a multiple of 64 bytes before or after `blocks`.
+    class Collector {
+    public:
+        FASTCCD_INLINE Collector(const double* /*blocks*/, const double* const* pairs) : pair_{pairs[0]} {}
+        FASTCCD_INLINE double operator()(int c) const { return pair_[static_cast<std::size_t>(c) * block_pairs]; }
+
+    private:
+        const double* pair_;
+    };
     /// 0, 1, 2, ... : the number of each lane.
     static FASTCCD_INLINE double lane_number() { return 0.0; }
 

@@ -265,6 +265,9 @@ public:
     /// Blocks are not copied and stay where they are; otherwise the next group takes the place of the last one.
     [[nodiscard]] FASTCCD_INLINE bool is_in_place() const { return in_place_ != nullptr; }
 
+    /// Where all blocks of the tile lie, or those of the group.
+    [[nodiscard]] FASTCCD_INLINE const double* blocks() const { return is_in_place() ? in_place_ : scratch_.blocks[0]; }
+
     /// Before a block of the group is read.
     FASTCCD_INLINE void at_block(const double* block)
     {

@@ -11,7 +11,8 @@
 //                                                                                  v
 //                                                                           contact or apart
 //
-// Before a pair is left undecided by the search for its roots, all certificates are tried on quarters of the step.
+// [slow] also takes the roots after a pair's first, if that is no contact or if roots are counted. Before a pair is left undecided by
+// the search for its roots, all certificates are tried on quarters of the step.
 //
 // Queues pack what a stage leaves, so that the next one runs on full batches. Where few pairs are left, the queue says where
 // their coordinates are; where most are, whole registers are compressed, and [screened] is left out.
@@ -167,12 +168,10 @@ private:
             const unsigned count = queue.size < width ? queue.size : width;
             queue.size -= count;
             source.meanwhile();
-            const double* pairs[width];
-            for (unsigned lane = 0; lane < width; ++lane) pairs[lane] = queue.pairs[queue.size + (lane < count ? lane : 0)];
+            const double** const pairs = queue.pairs + queue.size;
+            for (unsigned lane = count; lane < width; ++lane) pairs[lane] = pairs[count - 1];
             PairRecord<L> record;
-            record.r = relative_motion_of<L>(
-                [&](int c) FASTCCD_INLINE_LAMBDA { return Lane<L>::collect(pairs, static_cast<std::size_t>(c) * block_pairs); },
-                parameters.t_max);
+            record.r = relative_motion_of<L>(typename Lane<L>::Collector{source.blocks(), pairs}, parameters.t_max);
             compute_pair_again(record);
             record.pair = Lane<L>::load(&queue.numbers[queue.size]);
             examine(record, lanes_in_use<L>(count));

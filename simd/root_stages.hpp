@@ -38,29 +38,19 @@ private:
     const SearchParameters& parameters;
     TileScratch& scratch;
 
-    /// The pieces in which the cubic changes sign, and a few steps towards the root of each. Every step is done for all batches
-    /// before the next one, so that divisions and roots of many batches are under way at once.
+    /// The pieces in which the cubic changes sign, and a few steps towards the root in the first of them. Every step is done for all
+    /// batches before the next one, so that divisions and roots of many batches are under way at once.
     void find_roots(bool all)
     {
         const unsigned size = scratch.candidates.size, end = all ? size : size / width * width;
         for (unsigned i = 0; i < end; i += width) find_pieces(i, lanes_in_use<L>(size - i));
-        for (unsigned piece = 0; piece < 3; ++piece) {
-            unsigned any = 0;
-            for (unsigned i = 0; i < end; i += width) {
-                if (scratch.search.pieces[piece][i / width] == 0) continue;
-                any = 1;
-                if (piece > 0) next_piece(i);
-                start_in_middle(i);
-            }
-            if (any == 0) break;
-            for (int step = 0; step < quick_steps; ++step)
-                for (unsigned i = 0; i < end; i += width)
-                    if (scratch.search.pieces[piece][i / width] != 0) approach_root(i);
-            for (unsigned i = 0; i < end; i += width)
-                if (const unsigned lanes = scratch.search.pieces[piece][i / width]; lanes != 0) decide_quickly(i, lanes);
-        }
+        for (int step = 0; step < quick_steps; ++step)
+            for (unsigned i = 0; i < end; i += width) approach_root(i);
+        for (unsigned i = 0; i < end; i += width) decide_quickly(i);
         drop_front(scratch.candidates, end);
     }
+
+    FASTCCD_INLINE static L middle(L low, L high) { return (low + high) * broadcast<L>(0.5); }
 
     /// In the window alone: no leaf straddles the middle of the step, where it may end, and the other half has a certificate.
     FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
@@ -89,8 +79,11 @@ private:
         store(search.f, i, pieces.f);
         Lane<L>::store(&search.threshold[i], pieces.threshold);
         Lane<L>::store(&search.end[i], window.high);
-        Lane<L>::store(&search.low[i], select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2])));
-        Lane<L>::store(&search.high[i], select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3])));
+        const L low = select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2]));
+        const L high = select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3]));
+        Lane<L>::store(&search.low[i], low);
+        Lane<L>::store(&search.high[i], high);
+        Lane<L>::store(&search.guess[i], middle(low, high));
         Lane<L>::store(&search.later_low[i], select<L>(first_two, pieces.time[1], pieces.time[2]));
         Lane<L>::store(&search.later_high[i], select<L>(first_two, pieces.time[2], pieces.time[3]));
     }
@@ -106,23 +99,6 @@ private:
         const LaneMask<L> first = apart.first | less(zero, window.low), second = apart.second | less(window.high, one);
         lanes &= ~Lane<L>::bits(first & second);
         if (lanes != 0) leave_undecided(scratch, record.pair, lanes);
-    }
-
-    FASTCCD_INLINE void next_piece(unsigned i)
-    {
-        RootSearch& search = scratch.search;
-        const L later_high = Lane<L>::load(&search.later_high[i]);
-        Lane<L>::store(&search.low[i], Lane<L>::load(&search.later_low[i]));
-        Lane<L>::store(&search.high[i], later_high);
-        Lane<L>::store(&search.later_low[i], later_high);
-        Lane<L>::store(&search.later_high[i], Lane<L>::load(&search.end[i]));
-    }
-
-    FASTCCD_INLINE void start_in_middle(unsigned i)
-    {
-        RootSearch& search = scratch.search;
-        const L sum = Lane<L>::load(&search.low[i]) + Lane<L>::load(&search.high[i]);
-        Lane<L>::store(&search.guess[i], sum * broadcast<L>(0.5));
     }
 
     FASTCCD_INLINE void approach_root(unsigned i)
@@ -166,8 +142,9 @@ private:
 
     /// Decides what few steps allow, by the signs of the cubic. The piece is monotone: if it has opposite signs beyond the
     /// threshold at both ends of the leaf, then it has a root there and none beside it, and likewise in the bracket.
-    FASTCCD_INLINE void decide_quickly(unsigned i, unsigned lanes)
+    FASTCCD_INLINE void decide_quickly(unsigned i)
     {
+        const unsigned lanes = scratch.search.pieces[0][i / width];
         PairRecord<L> root;
         read(scratch.candidates, i, root);
         root.scale = load<Scales, L>(scratch.search.scale, i);
@@ -188,9 +165,29 @@ private:
             root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width), parameters.bounds);
         const unsigned contact = lanes & Lane<L>::bits(in_leaf & inclusion.present);
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
-        const unsigned others = lanes & ~contact & ~Lane<L>::bits(bracket.certain & inclusion.absent);
-        if (others == 0) return;
-        push(scratch.slow, others, root);
+        if (const unsigned others = lanes & ~contact & ~Lane<L>::bits(bracket.certain & inclusion.absent); others != 0)
+            leave_for_later(root, others);
+
+        // Few pairs have other roots, but most batches have such a pair. After a contact they do not matter.
+        const unsigned settled = parameters.count_roots ? 0 : contact;
+        if (const unsigned second = scratch.search.pieces[1][i / width] & ~settled; second != 0) {
+            root.low = Lane<L>::load(&scratch.search.later_low[i]);
+            root.high = Lane<L>::load(&scratch.search.later_high[i]);
+            root.guess = middle(root.low, root.high);
+            leave_for_later(root, second);
+        }
+        if (const unsigned third = scratch.search.pieces[2][i / width] & ~settled; third != 0) {
+            root.low = Lane<L>::load(&scratch.search.later_high[i]);
+            root.high = Lane<L>::load(&scratch.search.end[i]);
+            root.guess = middle(root.low, root.high);
+            leave_for_later(root, third);
+        }
+    }
+
+    /// Leaves it to refine().
+    FASTCCD_INLINE void leave_for_later(const PairRecord<L>& root, unsigned lanes)
+    {
+        push(scratch.slow, lanes, root);
         if (scratch.slow.size >= RootQueue::drain_at) refine(false);
     }
 

@@ -118,7 +118,7 @@ mutant 'one end point on one side (edge-edge)' $certificates 's/min\(p\.smallest
 
 halves=kernels/halves_certificate.hpp
 mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.second/apart.first | apart.second/' same_bits_test
-mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source\.is_in_place\(\)\) keep_waiting\(\);//' same_bits_test
+mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source\.is_in_place\(\)\) keep_waiting\(\);//' wide_lane_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
 mutant 'halved edge functions by sign alone' $halves 's/bound = broadcast<L>\(bounds\.quadratic\) \* area/bound = broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test
@@ -180,6 +180,9 @@ mutant 'lanes: crossing not asked for' $roots 's/crossing & Lane<L>::bits\(inclu
 mutant 'lanes: crossing by sign alone, quickly' $roots 's/less\(root\.threshold, min\(abs\(at_left\), abs\(at_right\)\)\) & //' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: crossing by sign alone' $roots 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, min\(pk, qk, tk\)\) \| less\(max\(pk, qk, tk\), zero - bound\)/less(zero, min(pk, qk, tk)) | less(max(pk, qk, tk), zero)/' certificates_test same_bits_test
+mutant 'lanes: roots after a contact not counted' $roots 's/parameters\.count_roots \? 0 : contact/contact/' same_bits_test
+mutant 'lanes: later roots not sought' $roots 's/parameters\.count_roots \? 0 : contact/parameters.count_roots ? 0 : ~0u/' same_bits_test
+mutant 'lanes: third root sought in the second piece' $roots 's/later_high\[i\]\);(\s+root\.high = Lane<L>::load\(&scratch\.search\.end)/later_low[i]);$1/' same_bits_test certificates_test
 mutant 'lanes: early cutoff too early' $pipeline 's/cutoff \+ 2 \* parameters\.leaf_width < 1\.0 \? cutoff \+ 2 \* parameters\.leaf_width : 1\.0/0.5 * cutoff/' indexed_test same_bits_test
 
 # ---- Minimum separation

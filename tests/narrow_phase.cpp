@@ -39,6 +39,15 @@ Answer answer(oracle::Kind kind, const PairView& pairs, const Options& options)
     return result;
 }
 
+Answer answer_without_roots(oracle::Kind kind, const PairView& pairs, const Options& options)
+{
+    Answer result;
+    result.toi.resize(pairs.size());
+    const Status status = time_of_impact(pair_kind(kind), pairs, options, result.toi, &result.summary);
+    if (!status.ok()) throw std::runtime_error(message(status.error));
+    return result;
+}
+
 std::vector<Isa> isas_to_test()
 {
     static const std::vector<Isa> found = [] {

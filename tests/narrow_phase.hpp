@@ -25,6 +25,8 @@ struct Answer {
 };
 /// Dense answer with roots. Throws std::runtime_error if the library reports an error.
 Answer answer(oracle::Kind kind, const PairView& pairs, const Options& options);
+/// The same without roots, which lets lanes stop at the first contact.
+Answer answer_without_roots(oracle::Kind kind, const PairView& pairs, const Options& options);
 
 /// Every instruction set of this build, except those this machine lacks; names those once on stderr, loudly.
 std::vector<Isa> isas_to_test();
