@@ -140,6 +140,21 @@ private:
         return {left, right, left + half, half, less(zero, left) & less_equal(right, one)};
     }
 
+    /// What the edge functions say of a bracket around the guess.
+    struct Neighbourhood {
+        LaneMask<L> present;  ///< Inside throughout it.
+        LaneMask<L> absent;   ///< Outside throughout it, and the piece has no root elsewhere.
+    };
+    FASTCCD_INLINE Neighbourhood look_around(const PairRecord<L>& root) const
+    {
+        const L delta = broadcast<L>(quick_bracket);
+        const RootBracket bracket = bracket_root(root, delta);
+        // With one leaf more on either side: the margin of the certified search. The guess's leaf lies within.
+        const Inclusion<L> inclusion = projected_inclusion<kind>(
+            root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width), parameters.bounds);
+        return {inclusion.present, bracket.certain & inclusion.absent};
+    }
+
     /// Decides what few steps allow, by the signs of the cubic. The piece is monotone: if it has opposite signs beyond the
     /// threshold at both ends of the leaf, then it has a root there and none beside it, and likewise in the bracket.
     FASTCCD_INLINE void decide_quickly(unsigned i)
@@ -154,18 +169,14 @@ private:
         root.high = Lane<L>::load(&scratch.search.high[i]);
         root.guess = Lane<L>::load(&scratch.search.guess[i]);
 
-        const L delta = broadcast<L>(quick_bracket);
-        const RootBracket bracket = bracket_root(root, delta);
+        const Neighbourhood around = look_around(root);
         const Leaf leaf = leaf_at(root.guess);
         const L at_left = evaluate(root.f, leaf.left), at_right = evaluate(root.f, leaf.right);
         const LaneMask<L> in_leaf = leaf.inner & less_equal(root.low, leaf.left) & less_equal(leaf.right, root.high) &
                                     less(root.threshold, min(abs(at_left), abs(at_right))) & opposite_signs(at_left, at_right);
-        // Over the bracket with one leaf more on either side: the margin of the certified search. The leaf lies within.
-        const Inclusion<L> inclusion = projected_inclusion<kind>(
-            root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width), parameters.bounds);
-        const unsigned contact = lanes & Lane<L>::bits(in_leaf & inclusion.present);
+        const unsigned contact = lanes & Lane<L>::bits(in_leaf & around.present);
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
-        if (const unsigned others = lanes & ~contact & ~Lane<L>::bits(bracket.certain & inclusion.absent); others != 0)
+        if (const unsigned others = lanes & ~contact & ~Lane<L>::bits(around.absent); others != 0)
             leave_for_later(root, others);
 
         // Few pairs have other roots, but most batches have such a pair. After a contact they do not matter.
@@ -256,7 +267,15 @@ private:
         if ((undecided & crossing) != 0)
             undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds)));
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
-        if (undecided != 0) look_at_quarters(root, undecided);
+        if (undecided != 0) look_again(root, undecided);
+    }
+
+    /// Roots after a pair's first have not been seen by decide_quickly(), and a few lie so close to a leaf's end that they certainly
+    /// cross in neither leaf. Rare, as above.
+    __attribute__((noinline)) void look_again(const PairRecord<L>& root, unsigned lanes)
+    {
+        lanes &= ~Lane<L>::bits(look_around(root).absent);
+        if (lanes != 0) look_at_quarters(root, lanes);
     }
 
     /// Without branches on which lanes are in contact: no processor foresees that, and while it finds out, the next batch would

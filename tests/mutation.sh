@@ -175,7 +175,7 @@ mutant 'lanes: bracket not certain' $roots 's/beyond & opposite_signs\(at_low, a
 mutant 'lanes: dismissed without a bracket' $roots 's/bracket\.certain & inclusion\.absent/inclusion.absent/' certificates_test same_bits_test
 mutant 'lanes: first leaf decided quickly' $roots 's/leaf\.inner & less_equal\(root/less_equal(root/' never_zero_test same_bits_test
 mutant 'lanes: first leaf decided' $roots 's/leaf\.inner & bracket\.certain/bracket.certain/' never_zero_test same_bits_test
-mutant 'lanes: crossing not asked for quickly' $roots 's/in_leaf & inclusion\.present/inclusion.present/' certificates_test same_bits_test
+mutant 'lanes: crossing not asked for quickly' $roots 's/in_leaf & around\.present/around.present/' certificates_test same_bits_test
 mutant 'lanes: crossing not asked for' $roots 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
 mutant 'lanes: crossing by sign alone, quickly' $roots 's/less\(root\.threshold, min\(abs\(at_left\), abs\(at_right\)\)\) & //' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: crossing by sign alone' $roots 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
