@@ -144,7 +144,7 @@ FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pair
 
 /// Asks for memory from one address to another, line by line, and returns where it stopped (a function without a result would be
 /// taken for one without effect). Not inlined, and its loop not unrolled: lines that one and the same instruction asks for, in their
-/// order, are what the hardware's own prefetchers take up. Two instructions in turn are enough to lose them, and then half as many
+/// order, come faster, probably because the hardware's own prefetchers take them up. With two instructions in turn half as many
 /// lines are under way (bench/README.md). Static, so that g++ sees which registers it leaves alone: all vectors.
 [[maybe_unused]] __attribute__((noinline)) static std::uintptr_t ask_for(std::uintptr_t next, std::uintptr_t end)
 {
