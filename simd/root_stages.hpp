@@ -174,18 +174,24 @@ private:
         const L at_left = evaluate(root.f, leaf.left), at_right = evaluate(root.f, leaf.right);
         const LaneMask<L> in_leaf = leaf.inner & less_equal(root.low, leaf.left) & less_equal(leaf.right, root.high) &
                                     less(root.threshold, min(abs(at_left), abs(at_right))) & opposite_signs(at_left, at_right);
-        const unsigned contact = lanes & Lane<L>::bits(in_leaf & around.present);
-        if (contact != 0) record_contacts(root.pair, leaf.left, contact);
-        if (const unsigned others = lanes & ~contact & ~Lane<L>::bits(around.absent); others != 0)
-            leave_for_later(root, others);
+        const LaneMask<L> is_contact = in_leaf & around.present, decided = is_contact | around.absent;
+        const unsigned contact = lanes & Lane<L>::bits(is_contact), undecided = lanes & ~Lane<L>::bits(decided);
+        record_contacts(root.pair, leaf.left, contact);
 
-        // Few pairs have other roots, but most batches have such a pair. After a contact they do not matter.
+        // The first root of some lanes and the second of others at once, whether there are any or not: few pairs have one left, but
+        // half of the batches of four have such a pair, and not to foresee which costs more. After a contact no other root matters.
         const unsigned settled = parameters.count_roots ? 0 : contact;
-        if (const unsigned second = scratch.search.pieces[1][i / width] & ~settled; second != 0) {
-            root.low = Lane<L>::load(&scratch.search.later_low[i]);
-            root.high = Lane<L>::load(&scratch.search.later_high[i]);
-            root.guess = middle(root.low, root.high);
-            leave_for_later(root, second);
+        const unsigned second = scratch.search.pieces[1][i / width] & ~settled;
+        const L second_low = Lane<L>::load(&scratch.search.later_low[i]), second_high = Lane<L>::load(&scratch.search.later_high[i]);
+        root.low = select<L>(decided, second_low, root.low);
+        root.high = select<L>(decided, second_high, root.high);
+        root.guess = select<L>(decided, middle(second_low, second_high), root.guess);
+        leave_for_later(root, undecided | second);
+        if (const unsigned both = undecided & second; both != 0) {
+            root.low = second_low;
+            root.high = second_high;
+            root.guess = middle(second_low, second_high);
+            leave_for_later(root, both);
         }
         if (const unsigned third = scratch.search.pieces[2][i / width] & ~settled; third != 0) {
             root.low = Lane<L>::load(&scratch.search.later_high[i]);

@@ -182,6 +182,8 @@ mutant 'lanes: crossing by sign alone' $roots 's/broadcast<L>\(parameters\.bound
 mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, min\(pk, qk, tk\)\) \| less\(max\(pk, qk, tk\), zero - bound\)/less(zero, min(pk, qk, tk)) | less(max(pk, qk, tk), zero)/' certificates_test same_bits_test
 mutant 'lanes: roots after a contact not counted' $roots 's/parameters\.count_roots \? 0 : contact/contact/' same_bits_test
 mutant 'lanes: later roots not sought' $roots 's/parameters\.count_roots \? 0 : contact/parameters.count_roots ? 0 : ~0u/' same_bits_test
+mutant 'lanes: second root sought in the first piece' $roots 's/select<L>\(decided, second_low, root\.low\)/root.low/' same_bits_test certificates_test
+mutant 'lanes: second root beside an undecided first lost' $roots 's/both = undecided & second;/both = 0;/' same_bits_test certificates_test wide_lane_test stress
 mutant 'lanes: third root sought in the second piece' $roots 's/later_high\[i\]\);(\s+root\.high = Lane<L>::load\(&scratch\.search\.end)/later_low[i]);$1/' same_bits_test certificates_test
 mutant 'lanes: early cutoff too early' $pipeline 's/cutoff \+ 2 \* parameters\.leaf_width < 1\.0 \? cutoff \+ 2 \* parameters\.leaf_width : 1\.0/0.5 * cutoff/' indexed_test same_bits_test
 
