@@ -84,6 +84,7 @@ struct TileScratch {
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
+    double earliest;                           ///< From the lanes: none of their times is before this.
     std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. What lanes report is proven.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
@@ -122,7 +123,7 @@ struct TileRequest {
 struct KernelTable {
     Isa isa;
     unsigned lanes;
-    /// Fills time, roots, reported and is_undecided of the scratch. What the lanes found of an undecided pair is to
+    /// Fills time, roots, reported, is_undecided and earliest of the scratch. What the lanes found of an undecided pair is to
     /// be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
     /// For the certified search of one pair; null if intervals are better looked at one by one.

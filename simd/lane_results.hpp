@@ -39,22 +39,32 @@ template <class L>
 FASTCCD_INLINE void clear_results(TileScratch& scratch, std::size_t count)
 {
     for (std::size_t i = 0; i < count; i += Lane<L>::width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+    scratch.earliest = __builtin_inf();
     __builtin_memset(scratch.roots, 0, count);
     __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
     __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
 }
 
-/// Fills in `reported` from the times.
+/// Fills in `reported` and `earliest` from the times.
 template <class L>
 FASTCCD_INLINE void mark_reported(TileScratch& scratch, std::size_t count)
 {
     const L infinity = broadcast<L>(__builtin_inf());
+    L smallest = infinity;
     for (std::size_t i = 0; i < count; i += 64) {
         std::uint64_t word = 0;
-        for (unsigned k = 0; k < 64; k += Lane<L>::width)
-            word |= std::uint64_t{Lane<L>::bits(less(Lane<L>::load(&scratch.time[i + k]), infinity))} << k;
+        for (unsigned k = 0; k < 64; k += Lane<L>::width) {
+            const L time = Lane<L>::load(&scratch.time[i + k]);
+            word |= std::uint64_t{Lane<L>::bits(less(time, infinity))} << k;
+            smallest = min(time, smallest);  // in this order a NaN, left there past the last pair, changes nothing
+        }
         scratch.reported[i / 64] = count - i < 64 ? word & ((std::uint64_t{1} << (count - i)) - 1) : word;
     }
+    alignas(64) double lanes[Lane<L>::width];
+    Lane<L>::store(lanes, smallest);
+    scratch.earliest = lanes[0];
+    for (unsigned lane = 1; lane < Lane<L>::width; ++lane)
+        if (lanes[lane] < scratch.earliest) scratch.earliest = lanes[lane];
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -140,6 +140,7 @@ private:
         Lane<L>::store(times, record.time);
         for_each_pair(record.pair, contact, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
             scratch.time[i] = times[lane];
+            if (times[lane] < scratch.earliest) scratch.earliest = times[lane];
             set_bit(scratch.reported, i);
             if ((proven >> lane & 1) == 0) set_bit(scratch.is_unproven, i);
         });

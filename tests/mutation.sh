@@ -200,6 +200,14 @@ mutant 'separation: axis without d' $steps 's/\(broadcast<L>\(parameters\.thresh
 mutant 'separation: turning, middle not asked' $steps 's/ & less\(from \+ to, c\.middle_n \+ c\.middle_m\)//' error_bounds_test separation_test
 mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & less\(sight\.reach\.low, time\) & less\(time, high\)/here/' separation_test separation_bits_test
 
+# ---- Totals
+tile=scheduler/tile_runner.cpp
+mutant 'totals: first contact of the lanes not seen' simd/lane_results.hpp 's/scratch\.earliest = lanes\[0\]/scratch.earliest = __builtin_inf()/' api_test same_bits_test
+mutant 'totals: first separation of the lanes not seen' simd/separation_pipeline.hpp 's/if \(times\[lane\] < scratch\.earliest\) scratch\.earliest = times\[lane\];//' api_test separation_bits_test
+mutant 'totals: first contact of the search not seen' $tile 's/earliest = std::min\(earliest, toi\);//' api_test same_bits_test
+mutant 'totals: invalid pairs are contacts' $tile 's/reported - invalid/reported/' api_test
+mutant 'totals: invalid pairs are proven' $tile 's/proven - invalid/proven/' api_test
+
 # ---- Boxes of indexed pairs
 boxes=scheduler/mesh_boxes.cpp
 mutant 'boxes: highest is the lower line' $boxes 's/-1 - (start|end)/-$1/g' boxes_test
