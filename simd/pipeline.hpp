@@ -113,12 +113,20 @@ private:
             set_bit(scratch.is_undecided, static_cast<unsigned>(source.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
         scratch.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
 
+        // Eight at a time, the last of them perhaps in vain: processors foresee the number of eights better than that of pairs.
         ScreenedQueue& queue = scratch.screened;
-        for (; kept != 0; kept &= kept - 1) {
-            const auto i = static_cast<std::size_t>(__builtin_ctzll(kept));
-            queue.pairs[queue.size] = blocks + i / block_pairs * block_coordinates + i % block_pairs;
-            queue.numbers[queue.size++] = static_cast<double>(source.number(first + i));
+        const auto more = static_cast<unsigned>(__builtin_popcountll(kept));
+        const std::uint64_t last = std::uint64_t{1} << (count - 1);
+        for (unsigned k = 0; k < more; k += 8) {
+#pragma GCC unroll 8
+            for (unsigned j = 0; j < 8; ++j) {
+                const auto i = static_cast<std::size_t>(__builtin_ctzll(kept | last));
+                kept &= kept - 1;
+                queue.pairs[queue.size + k + j] = blocks + i / block_pairs * block_coordinates + i % block_pairs;
+                queue.numbers[queue.size + k + j] = static_cast<double>(source.number(first + i));
+            }
         }
+        queue.size += more;
     }
 
     /// Where most pairs go on: straight to the certificates on both halves, without a queue.
