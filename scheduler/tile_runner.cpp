@@ -156,7 +156,7 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
         for (std::size_t i = 0; i < count; ++i) search(i);
     }
 
-    // Word by word, and contacts one by one only where that is needed: one random pair in five is one.
+    // Word by word, and contacts one by one only where that is needed: of random edge-edge pairs one in five is one.
     std::size_t reported = 0, proven = 0;  // with the invalid ones, which the search alone reports
     for (std::size_t w = 0; w < (count + 63) / 64; ++w) {
         reported += static_cast<std::size_t>(std::popcount(scratch.reported[w]));
