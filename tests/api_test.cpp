@@ -216,10 +216,15 @@ TEST(Api, SummaryAgreesWithTheDenseAnswer)
     // What lanes leave to the certified search: coordinates that are not finite, and a vertex that meets another one.
     pairs[77][2][1] = not_a_number;
     pairs[16001][6][0] = -infinity;
-    const oracle::Pair vertices_meet{{{0, 0, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1000}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    const oracle::Pair vertices_meet{{{0, 0, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1e6}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
     for (const bool first_by_search : {false, true}) {
         // Twice, as the first contact: of the pair of smaller index.
-        if (first_by_search) pairs[12345] = pairs[19000] = vertices_meet;
+        if (first_by_search) {
+            pairs[12345] = pairs[19000] = vertices_meet;
+            const Contact first = answer(oracle::Kind::vertex_face, interleaved(pairs), {}).summary.earliest;
+            EXPECT_EQ(first.pair, 12345u);
+            EXPECT_FALSE(first.proven);  // what lanes report is
+        }
         for (const double t_max : {1.0, 0.7})
             for (const double separation : {0.0, 1e-6, 0.01}) {  // with the last, some are in contact at the start
                 Options options;
