@@ -99,8 +99,8 @@ private:
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
             const double* const block = blocks + i * pair_coordinates;
-            source.at_block(block);
             for (unsigned lane = 0; lane < block_pairs; lane += width) {
+                source.at_batch(block);
                 PairRecord<L> record;
                 const Screening found = screen(block + lane, record);
                 kept |= std::uint64_t{found.kept} << (i + lane);
@@ -136,8 +136,8 @@ private:
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
             const double* const block = blocks + i * pair_coordinates;
-            source.at_block(block);
             for (unsigned lane = 0; lane < block_pairs && i + lane < count; lane += width) {
+                source.at_batch(block);
                 PairRecord<L> record;
                 const Screening found = screen(block + lane, record);
                 record.pair = source.numbers(first + i + lane);
