@@ -101,31 +101,41 @@ FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const 
     return x.apart | y.apart | z.apart;
 }
 
-/// All four beyond the bound (not negative) on one side. Their signs are compared as bits, so that minima are enough.
 template <class L>
-FASTCCD_INLINE LaneMask<L> one_sign(L a, L b, L c, L d, L bound)
+FASTCCD_INLINE L smallest_of(L a, L b)
 {
-    return less(bound, min(min(abs(a), times_sign(b, a)), min(times_sign(c, a), times_sign(d, a))));
+    return min(a, b);
+}
+/// In pairs, so that few of the minima wait for others.
+template <class L, class... More>
+FASTCCD_INLINE L smallest_of(L a, L b, L c, More... more)
+{
+    if constexpr (sizeof...(more) == 0)
+        return min(min(a, b), c);
+    else
+        return min(min(a, b), smallest_of(c, more...));
+}
+
+/// All values beyond the bound (not negative) on one side. Their signs are compared as bits, so that minima are enough: where
+/// comparisons, minima and sums share units, those have the most to do, and operations on bits go anywhere.
+template <class L, class... More>
+FASTCCD_INLINE LaneMask<L> one_sign(L bound, L first, More... others)
+{
+    return less(bound, smallest_of(abs(first), times_sign(others, first)...));
 }
 
 /// Never coplanar: all four coefficients beyond the bound on one side.
 template <class L>
 FASTCCD_INLINE LaneMask<L> cubic_certificate(const CoplanarityCubic<L>& f, L volume, const CertificateBounds& bounds)
 {
-    return one_sign(f.start, f.thrice_second, f.thrice_third, f.end, broadcast<L>(bounds.cubic) * volume);
+    return one_sign(broadcast<L>(bounds.cubic) * volume, f.start, f.thrice_second, f.thrice_third, f.end);
 }
 
-/// The sign of a function over an interval: above `smallest`, below `largest`.
+/// Bernstein coefficients of an edge function over an interval, in any order, or positive multiples of them.
 template <class L>
-struct SignRange {
-    L smallest, largest;
+struct EdgeCoefficients {
+    L a, b, c;
 };
-
-template <class L>
-FASTCCD_INLINE SignRange<L> sign_range(L a, L b, L c)
-{
-    return {min(a, b, c), max(a, b, c)};
-}
 
 /// Edge functions of one coordinate projection over an interval.
 /// Vertex-face: p, q, t are the orientations of the vertex against the face's edges r1 r2, r2 r3, r3 r1;
@@ -134,15 +144,15 @@ FASTCCD_INLINE SignRange<L> sign_range(L a, L b, L c)
 /// the second; the edges are apart if both of one couple are strictly on one side throughout.
 /// `bound_sum` is for s, which is a sum of three cross products; q, compared together with it, could do with less.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> apart_in_projection(const SignRange<L>& p, const SignRange<L>& q, const SignRange<L>& t,
-                                               const SignRange<L>& s, L bound, L bound_sum)
+FASTCCD_INLINE LaneMask<L> apart_in_projection(const EdgeCoefficients<L>& p, const EdgeCoefficients<L>& q, const EdgeCoefficients<L>& t,
+                                               const EdgeCoefficients<L>& s, L bound, L bound_sum)
 {
     if constexpr (kind == PairKind::vertex_face) {
-        return less(bound, max(p.smallest, q.smallest, t.smallest)) &
-               less(min(p.largest, q.largest, t.largest), negated(bound));
+        const auto smallest = [](const EdgeCoefficients<L>& e) FASTCCD_INLINE_LAMBDA { return min(e.a, e.b, e.c); };
+        const auto largest = [](const EdgeCoefficients<L>& e) FASTCCD_INLINE_LAMBDA { return max(e.a, e.b, e.c); };
+        return less(bound, max(smallest(p), smallest(q), smallest(t))) & less(min(largest(p), largest(q), largest(t)), negated(bound));
     } else {
-        return less(bound, min(p.smallest, t.smallest)) | less(max(p.largest, t.largest), negated(bound)) |
-               less(bound_sum, min(q.smallest, s.smallest)) | less(max(q.largest, s.largest), negated(bound_sum));
+        return one_sign(bound, p.a, p.b, p.c, t.a, t.b, t.c) | one_sign(bound_sum, q.a, q.b, q.c, s.a, s.b, s.c);
     }
 }
 
@@ -170,10 +180,10 @@ FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, co
                                                  const Scales<L>& scale, const CertificateBounds& bounds)
 {
     const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
-        const auto range = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
-            return sign_range(component(v.start), component(v.twice_middle), component(v.end));
+        const auto of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> {
+            return {component(v.start), component(v.twice_middle), component(v.end)};
         };
-        return apart_in_projection<kind, L>(range(p), range(q), range(t), range(s),
+        return apart_in_projection<kind, L>(of(p), of(q), of(t), of(s),
                                             broadcast<L>(bounds.quadratic) * area,
                                             broadcast<L>(bounds.quadratic_sum) * area);
     };

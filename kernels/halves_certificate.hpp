@@ -57,7 +57,7 @@ FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f,
 {
     const HalvedCubic<L> cubic = halved(f);
     const L volume_bound = broadcast<L>(bounds.cubic) * scale.volume;
-    const auto never_coplanar = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(c[0], c[1], c[2], c[3], volume_bound); };
+    const auto never_coplanar = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(volume_bound, c[0], c[1], c[2], c[3]); };
     LaneMask<L> first = never_coplanar(cubic.first), second = never_coplanar(cubic.second);
 
     const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
@@ -66,8 +66,9 @@ FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f,
         };
         const HalvedQuadratic<L> hp = halves_of(p), hq = halves_of(q), ht = halves_of(t), hs = halves_of(s);
         const L bound = broadcast<L>(bounds.quadratic) * area, bound_sum = broadcast<L>(bounds.quadratic_sum) * area;
-        const auto on_first = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA { return sign_range(h.start, h.first, h.middle); };
-        const auto on_second = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA { return sign_range(h.middle, h.second, h.end); };
+        // The value in the middle first: both halves compare signs with its one.
+        const auto on_first = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.first, h.start}; };
+        const auto on_second = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.second, h.end}; };
         first = first | apart_in_projection<kind, L>(on_first(hp), on_first(hq), on_first(ht), on_first(hs), bound, bound_sum);
         second = second | apart_in_projection<kind, L>(on_second(hp), on_second(hq), on_second(ht), on_second(hs), bound, bound_sum);
     };

@@ -30,21 +30,20 @@ FASTCCD_INLINE Inclusion<L> projected_inclusion(const RelativeMotion<L>& r, cons
     const Vector3<L> t = kind == PairKind::vertex_face ? cross(r3, r1) : cross(r1, r3);
     const Vector3<L> s = kind == PairKind::vertex_face ? t : add(subtract(q, t), p);
 
-    const L zero = broadcast<L>(0.0);
     const L change = broadcast<L>(8.0) * (delta + delta * delta);
     const L per_area = change + broadcast<L>(bounds.edge_function());
     const L per_area_sum = broadcast<L>(3.0) * change + broadcast<L>(bounds.edge_function_sum());
 
     const auto along = [&](L pk, L qk, L tk, L sk, L area) FASTCCD_INLINE_LAMBDA -> Inclusion<L> {
         const L bound = per_area * area, bound_sum = per_area_sum * area;
-        const LaneMask<L> absent = apart_in_projection<kind, L>({pk, pk}, {qk, qk}, {tk, tk}, {sk, sk}, bound, bound_sum);
         if constexpr (kind == PairKind::vertex_face) {
-            return {absent, less(bound, min(pk, qk, tk)) | less(max(pk, qk, tk), zero - bound)};
+            const L low = min(pk, qk, tk), high = max(pk, qk, tk);
+            return {less(bound, high) & less(low, negated(bound)), less(bound, low) | less(high, negated(bound))};
         } else {
-            // Across: one of a couple strictly positive, the other strictly negative.
-            const LaneMask<L> across_first = less(bound, max(pk, tk)) & less(min(pk, tk), zero - bound);
-            const LaneMask<L> across_second = less(bound_sum, max(qk, sk)) & less(min(qk, sk), zero - bound_sum);
-            return {absent, across_first & across_second};
+            // Of each couple: on one side, or across, one strictly positive and the other strictly negative.
+            const LaneMask<L> aside = one_sign(bound, pk, tk) | one_sign(bound_sum, qk, sk);
+            const LaneMask<L> across = one_sign(bound, pk, negated(tk)) & one_sign(bound_sum, qk, negated(sk));
+            return {aside, across};
         }
     };
     const Inclusion<L> x = along(p.x, q.x, t.x, s.x, scale.yz);

@@ -106,15 +106,18 @@ mutant 'change of edge functions = 0' kernels/projected_inclusion.hpp 's/broadca
 # ---- Certificates of the whole interval loosened
 certificates=kernels/certificates.hpp
 mutant 'cubic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.cubic\) \* volume/broadcast<L>(0.0) * volume/' certificates_test truth_test
-mutant 'cubic certificate: one coefficient of either sign' $certificates 's/times_sign\(d, a\)/abs(d)/' certificates_test truth_test
+mutant 'cubic certificate: one coefficient not asked' $certificates 's/f\.thrice_third, f\.end\)/f.thrice_third, f.thrice_third)/' certificates_test truth_test
+mutant 'signs not compared' $certificates 's/times_sign\(others, first\)/abs(others)/' certificates_test truth_test
+mutant 'one of several values not compared' $certificates 's/return min\(min\(a, b\), smallest_of/return min(a, smallest_of/' certificates_test truth_test
 mutant 'lanes: NaN in range' $certificates 's/less_equal\(sum, sum\) & //' api_test
 mutant 'quadratic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test
 mutant 'sum of edge functions by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test stress
 mutant 'linear certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.linear\) \* extent/broadcast<L>(0.0) * extent/' certificates_test truth_test stress
 mutant 'linear certificate at one end' $certificates 's/less\(bound, min\(start\.above, end\.above\)\)/less(bound, max(start.above, end.above))/' certificates_test
 mutant 'touching counts as apart' $certificates 's/less\(bound, min\(start\.above, end\.above\)\)/(!less(min(start.above, end.above), bound))/' certificates_test
-mutant 'outside one side is outside (vertex-face)' $certificates 's/(max\(p\.smallest, q\.smallest, t\.smallest\)\)) &/$1 |/' certificates_test
-mutant 'one end point on one side (edge-edge)' $certificates 's/min\(p\.smallest, t\.smallest\)/max(p.smallest, t.smallest)/' certificates_test
+mutant 'outside one side is outside (vertex-face)' $certificates 's/(max\(smallest\(p\), smallest\(q\), smallest\(t\)\)\)) &/$1 |/' certificates_test
+mutant 'one end point on one side (edge-edge)' $certificates 's/one_sign\(bound, p\.a, p\.b, p\.c, t\.a, t\.b, t\.c\)/one_sign(bound, p.a, p.b, p.c)/' certificates_test
+mutant 'one end point on one side of the other edge' $certificates 's/one_sign\(bound_sum, q\.a, q\.b, q\.c, s\.a, s\.b, s\.c\)/one_sign(bound_sum, q.a, q.b, q.c)/' certificates_test
 
 halves=kernels/halves_certificate.hpp
 mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.second/apart.first | apart.second/' same_bits_test
@@ -179,7 +182,9 @@ mutant 'lanes: crossing not asked for quickly' $roots 's/in_leaf & around\.prese
 mutant 'lanes: crossing not asked for' $roots 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
 mutant 'lanes: crossing by sign alone, quickly' $roots 's/less\(root\.threshold, min\(abs\(at_left\), abs\(at_right\)\)\) & //' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: crossing by sign alone' $roots 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
-mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, min\(pk, qk, tk\)\) \| less\(max\(pk, qk, tk\), zero - bound\)/less(zero, min(pk, qk, tk)) | less(max(pk, qk, tk), zero)/' certificates_test same_bits_test
+mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, low\) \| less\(high, negated\(bound\)\)/less(broadcast<L>(0.0), low) | less(high, broadcast<L>(0.0))/' certificates_test same_bits_test
+mutant 'lanes: across one line of two' kernels/projected_inclusion.hpp 's/(one_sign\(bound, pk, negated\(tk\)\)) &/$1 |/' certificates_test same_bits_test
+mutant 'lanes: aside taken for across' kernels/projected_inclusion.hpp 's/one_sign\(bound, pk, negated\(tk\)\)/one_sign(bound, pk, tk)/' certificates_test same_bits_test
 mutant 'lanes: roots after a contact not counted' $roots 's/parameters\.count_roots \? 0 : contact/contact/' same_bits_test
 mutant 'lanes: later roots not sought' $roots 's/parameters\.count_roots \? 0 : contact/parameters.count_roots ? 0 : ~0u/' same_bits_test
 mutant 'lanes: second root sought in the first piece' $roots 's/select<L>\(decided, second_low, root\.low\)/root.low/' same_bits_test certificates_test
