@@ -1,10 +1,17 @@
 // fastccd_digest [PAIRS]: a line per family of hard pairs with a checksum of everything that is answered, from every instruction
 // set of this machine. Two machines promise the same output: tools/test.sh --all compares this one, an emulated x86-64 without
-// AVX, and an emulated arm64. Exit 1 if instruction sets differ on one machine already.
+// AVX, and an emulated arm64.
+// fastccd_digest --compare FILE: only the lines that differ from those of FILE, which another machine or an earlier commit has
+// written, as tests/digests.txt. Exit 1 if there are any, or if instruction sets differ on one machine already.
 #include <bit>
+#include <cinttypes>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "generators.hpp"
 #include "narrow_phase.hpp"
@@ -33,8 +40,8 @@ std::uint64_t checksum(const Answer& answer)
     return sum.value();
 }
 
-/// True if all instruction sets and the certified search agree.
-bool print_digest(const std::string& family, oracle::Kind kind, std::size_t pairs_per_family)
+/// Appends to `lines`. True if all instruction sets and the certified search agree.
+bool add_digest(const std::string& family, oracle::Kind kind, std::size_t pairs_per_family, std::vector<std::string>& lines)
 {
     std::vector<oracle::Pair> pairs;
     generate(family, kind, 4711, pairs_per_family, pairs);
@@ -48,8 +55,10 @@ bool print_digest(const std::string& family, oracle::Kind kind, std::size_t pair
             options.reference = true;
             const Answer expected = answer(kind, buffer.view(), options);
             const std::uint64_t sum = checksum(expected);
-            std::printf("%s %s %g %g %zu %016llx\n", family.c_str(), kind_name(kind), tolerance, t_max,
-                        expected.summary.contacts, static_cast<unsigned long long>(sum));
+            char line[200];
+            std::snprintf(line, sizeof line, "%s %s %g %g %zu %016" PRIx64, family.c_str(), kind_name(kind), tolerance, t_max,
+                          expected.summary.contacts, sum);
+            lines.emplace_back(line);
             options.reference = false;
             for (const Isa isa : isas_to_test()) {
                 options.isa = isa;
@@ -61,21 +70,55 @@ bool print_digest(const std::string& family, oracle::Kind kind, std::size_t pair
     return agree;
 }
 
+std::vector<std::string> all_digests(std::size_t pairs_per_family, bool& agree)
+{
+    std::vector<std::string> lines;
+    for (const std::string& family : families())
+        for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
+            agree &= add_digest(family, kind, pairs_per_family, lines);
+    return lines;
+}
+
+/// True if `lines` are those of the file; prints which are not.
+bool same_as_file(const std::vector<std::string>& lines, const char* file)
+{
+    std::ifstream in{file};
+    std::vector<std::string> expected;
+    for (std::string line; std::getline(in, line);) expected.push_back(line);
+    if (expected.size() != lines.size()) {
+        std::fprintf(stderr, "%s: %zu lines, but there are %zu digests\n", file, expected.size(), lines.size());
+        return false;
+    }
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (lines[i] == expected[i]) continue;
+        ++differ;
+        std::printf("%s\n    was %s\n", lines[i].c_str(), expected[i].c_str());
+    }
+    if (differ > 0)
+        std::fprintf(stderr, "%s: %zu of %zu digests differ. If the bits of answers were meant to change, write it anew\n", file, differ,
+                     lines.size());
+    return differ == 0;
+}
+
 }  // namespace
 }  // namespace fastccd::testing
 
 int main(int argc, char** argv)
 {
-    using namespace fastccd;
     using namespace fastccd::testing;
-    const std::size_t pairs = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 200;
-    if (argc > 2 || pairs == 0) {
-        std::fprintf(stderr, "usage: fastccd_digest [PAIRS of each family]\n");
+    constexpr std::size_t usual_pairs = 200;
+    const bool compare = argc == 3 && std::string_view{argv[1]} == "--compare";
+    const std::size_t pairs = argc == 2 ? std::strtoull(argv[1], nullptr, 10) : usual_pairs;
+    if ((argc > 2 && !compare) || pairs == 0) {
+        std::fprintf(stderr, "usage: fastccd_digest [PAIRS of each family]\n       fastccd_digest --compare FILE\n");
         return 2;
     }
     bool agree = true;
-    for (const std::string& family : families())
-        for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
-            agree &= print_digest(family, kind, pairs);
+    const std::vector<std::string> lines = all_digests(pairs, agree);
+    if (compare)
+        agree &= same_as_file(lines, argv[2]);
+    else
+        for (const std::string& line : lines) std::printf("%s\n", line.c_str());
     return agree ? 0 : 1;
 }
