@@ -66,7 +66,7 @@ FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f,
         };
         const HalvedQuadratic<L> hp = halves_of(p), hq = halves_of(q), ht = halves_of(t), hs = halves_of(s);
         const L bound = broadcast<L>(bounds.quadratic) * area, bound_sum = broadcast<L>(bounds.quadratic_sum) * area;
-        // The value in the middle first: both halves compare signs with its one.
+        // The value in the middle first: its sign, which both halves share, is the one that others are compared with.
         const auto on_first = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.first, h.start}; };
         const auto on_second = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.second, h.end}; };
         first = first | apart_in_projection<kind, L>(on_first(hp), on_first(hq), on_first(ht), on_first(hs), bound, bound_sum);

@@ -270,7 +270,7 @@ public:
     [[nodiscard]] FASTCCD_INLINE const double* blocks() const { return is_in_place() ? in_place_ : scratch_.blocks[0]; }
 
     /// Before a batch of a block of the group is read. Batch by batch, although 8 blocks lie between what is asked for and what is
-    /// read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer (bench/README.md).
+    /// read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/README.md).
     FASTCCD_INLINE void at_batch(const double* block)
     {
         if (is_in_place()) prefetcher_.at_pairs(block, Lane<Batch>::width);

@@ -79,25 +79,30 @@ std::vector<std::string> all_digests(std::size_t pairs_per_family, bool& agree)
     return lines;
 }
 
-/// True if `lines` are those of the file; prints which are not.
+/// True if `lines` are those of the file; prints which are not, by their numbers in it.
 bool same_as_file(const std::vector<std::string>& lines, const char* file)
 {
     std::ifstream in{file};
+    if (!in) {
+        std::fprintf(stderr, "%s: cannot be read\n", file);
+        return false;
+    }
     std::vector<std::string> expected;
     for (std::string line; std::getline(in, line);) expected.push_back(line);
     if (expected.size() != lines.size()) {
-        std::fprintf(stderr, "%s: %zu lines, but there are %zu digests\n", file, expected.size(), lines.size());
+        std::fprintf(stderr, "%s: %zu lines, but there are %zu digests. If families were added, write it anew: fastccd_digest > %s\n", file,
+                     expected.size(), lines.size(), file);
         return false;
     }
     std::size_t differ = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (lines[i] == expected[i]) continue;
         ++differ;
-        std::printf("%s\n    was %s\n", lines[i].c_str(), expected[i].c_str());
+        std::printf("%s:%zu: %s\n    is now %s\n", file, i + 1, expected[i].c_str(), lines[i].c_str());
     }
     if (differ > 0)
-        std::fprintf(stderr, "%s: %zu of %zu digests differ. If the bits of answers were meant to change, write it anew\n", file, differ,
-                     lines.size());
+        std::fprintf(stderr, "%s: %zu of %zu digests differ. If the bits of answers were meant to change, write it anew: fastccd_digest > %s\n",
+                     file, differ, lines.size(), file);
     return differ == 0;
 }
 
