@@ -23,10 +23,10 @@ struct Scales {
 template <class L>
 FASTCCD_INLINE Scales<L> scales(const Extents<L>& e)
 {
-    const L floor = broadcast<L>(area_floor);
-    const L xy = e.x * e.y;
-    return {max(e.y * e.z, floor), max(e.z * e.x, floor), max(xy, floor),
-            max(xy * e.z, broadcast<L>(volume_floor))};
+    const L floor = broadcast<L>(length_floor);
+    const L x = max(e.x, floor), y = max(e.y, floor), z = max(e.z, floor);
+    const L xy = x * y;
+    return {y * z, z * x, xy, xy * z};
 }
 
 /// Components of r1, r2, r3 along one axis at one end of an interval.
@@ -69,6 +69,14 @@ FASTCCD_INLINE LaneMask<L> separated(const AxisGap<L>& start, const AxisGap<L>& 
     return less(bound, min(start.above, end.above)) | less(max(start.below, end.below), negated(bound));
 }
 
+/// Of a gap, for components with this extent. What is interpolated errs by some 2^-1074 as well, where products underflow; not so
+/// over the whole of a step with t_max = 1: there nothing is, and the bound is 0 whatever the extent.
+template <class L>
+FASTCCD_INLINE L gap_bound(const CertificateBounds& bounds, L extent)
+{
+    return broadcast<L>(bounds.linear) * max(extent, broadcast<L>(length_floor));
+}
+
 template <class L>
 struct LinearCertificate {
     LaneMask<L> apart;
@@ -82,7 +90,7 @@ FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>
 {
     const AxisGap<L> s = axis_gap<kind>(start), e = axis_gap<kind>(end);
     const L extent = max(max(s.largest, e.largest), negated(min(s.smallest, e.smallest)));
-    return {separated(s, e, broadcast<L>(bounds.linear) * extent), extent};
+    return {separated(s, e, gap_bound(bounds, extent)), extent};
 }
 
 /// All axes at once; the extents come with it for free.

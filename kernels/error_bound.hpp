@@ -205,12 +205,12 @@ struct ErrorBounds {
     [[nodiscard]] FASTCCD_INLINE constexpr double area() const { return (120 * rho + 190 + slack) * u; }
 };
 
-/// Absolute floors under the products of extents. Lanes take pairs whose coordinates differ by less
-/// than largest_extent; a product of two components that underflows errs by at most 2^-1075, times
-/// a third component below 2^-945, some twenty times: far below u 2^-800. Pairs at or below the floors
-/// are never certified by the lanes and go to the scalar path, which scales each axis by a power of two.
-inline constexpr double volume_floor = 0x1p-800;
-inline constexpr double area_floor = 0x1p-900;
+/// Absolute floor under extents, against what underflows; areas are 2^-532 and volumes 2^-798 at least, then. Lanes take pairs
+/// whose coordinates differ by less than largest_extent. A product of two components that underflows errs by at most 2^-1075,
+/// times a third component below 2^-975, some twenty times: far below u 2^-798. Interpolated components err by a few 2^-1074:
+/// far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes and go to the scalar path, which
+/// scales each axis by a power of two.
+inline constexpr double length_floor = 0x1p-266;
 /// Smallest V for which discriminants (degree 2 in V) cannot underflow.
 inline constexpr double smallest_volume = 0x1p-300;
 

@@ -28,7 +28,7 @@ FASTCCD_INLINE LaneMask<L> separated_on_part(const RelativeMotion<L>& r, const E
     const auto along = [&](auto component, L extent) FASTCCD_INLINE_LAMBDA {
         const AxisGap<L> start = axis_gap<kind, L>({component(r.start[0]), component(r.start[1]), component(r.start[2])});
         const AxisGap<L> end = axis_gap<kind, L>({component(r.end[0]), component(r.end[1]), component(r.end[2])});
-        return separated(start, end, broadcast<L>(bounds.linear) * extent);
+        return separated(start, end, gap_bound(bounds, extent));
     };
     return along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, extents.x) |
            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, extents.y) |

@@ -28,8 +28,15 @@ struct SearchParameters {
     }
 
     /// A time not after s t_max: the product is rounded up by at most a factor 1 + u, and
-    /// (1 + u)^2 (1 - 2 u) < 1.
-    [[nodiscard]] double time(double s) const { return t_max == 1.0 ? s : (s * t_max) * (1.0 - 0x1p-52); }
+    /// (1 + u)^2 (1 - 2 u) < 1. Below 2^-1020 it is rounded up by at most 2^-1074 instead, and two doubles of that size
+    /// differ by a multiple of it.
+    [[nodiscard]] double time(double s) const
+    {
+        if (t_max == 1.0) return s;
+        const double product = s * t_max;
+        return product < 0x1p-1020 ? (product > 0x1p-1073 ? product - 0x1p-1073 : 0.0)
+                                  : product * (1.0 - 0x1p-52);
+    }
 };
 
 }  // namespace fastccd

@@ -17,7 +17,7 @@ template <PairKind kind>
 class RootCounter {
 public:
     RootCounter(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters)
-        : pair{polynomials}, parameters{search_parameters}, leaves{polynomials, search_parameters}
+        : pair{polynomials}, leaf_width{std::min(search_parameters.leaf_width, widest_leaf)}, leaves{polynomials, search_parameters}
     {
     }
 
@@ -36,10 +36,10 @@ public:
             } else if (one_variation(f) && pair.included(i)) {
                 see_sign(f.c0);
                 add_roots(1);
-            } else if (width > parameters.leaf_width && !(flat(f) && width <= widest_flat)) {
+            } else if (width > leaf_width && !(flat(f) && width <= widest_flat)) {
                 stack.push_halves(i);
                 continue;
-            } else if (width <= parameters.leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
+            } else if (width <= leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
                 see_sign(f.c0);
             } else if (!open) {
                 open = true;
@@ -56,6 +56,9 @@ private:
     /// An interval on which the cubic vanishes within rounding is halved down to this width only: its roots
     /// cannot be told apart, and always-coplanar motion must not be followed leaf by leaf.
     static constexpr double widest_flat = 0x1p-6;
+    /// Intervals that stay unclear are halved down to this width at least, however coarse the answer may be: two
+    /// roots in one of them count as one multiple root, whether there is contact at both or not.
+    static constexpr double widest_leaf = 0x1p-30;
 
     [[nodiscard]] int sign(double value) const
     {
@@ -93,7 +96,7 @@ private:
     }
 
     const PairPolynomials<kind>& pair;
-    const SearchParameters& parameters;
+    double leaf_width;
     LeafSearch<kind> leaves;
     bool open = false;
     bool countable = true;

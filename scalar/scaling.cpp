@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <error_bound.hpp>
@@ -14,35 +15,52 @@ namespace {
 constexpr double smallest_unscaled = 0x1p-100;
 constexpr double largest_unscaled = largest_extent;
 
-/// An axis of this extent is left alone.
-bool is_unscaled(double extent) { return extent == 0.0 || (extent >= smallest_unscaled && extent <= largest_unscaled); }
+bool within_range(double extent) { return extent >= smallest_unscaled && extent <= largest_unscaled; }
 
-/// Multiplies the eight coordinates of one axis so that their differences have an extent near 1, if needed.
-/// Scaling down may round tiny coordinates to multiples of 2^-1074. Rounding is monotone, so no difference
-/// changes sign, and the error is far below u times the extent.
-void scale_axis(double (&x)[8])
+/// An axis of this extent over the step, and over the searched part of it, is left alone. Over a short part it may be far
+/// smaller, where all begins close together.
+bool is_unscaled(double step, double searched) { return step == 0.0 || (within_range(step) && within_range(searched)); }
+
+bool all_unscaled(const Extents<double>& step, const Extents<double>& searched)
 {
-    // Halve first if a difference could overflow; exact, except as above.
-    for (const double value : x)
-        if (std::abs(value) > 0x1p1021) {
-            for (double& each : x) each *= 0x1p-4;
-            break;
-        }
-    double extent = 0.0;
-    for (int end = 0; end < 8; end += 4)
-        for (int point = 1; point < 4; ++point) extent = std::max(extent, std::abs(x[end + point] - x[end]));
-    if (is_unscaled(extent)) return;
-
-    // Differences are taken before scaling, so that a small difference of large coordinates keeps all its
-    // digits; then x0 = 0 and x_i = r_i, which is the same relative motion.
-    const int exponent = std::ilogb(extent);
-    for (int end = 0; end < 8; end += 4) {
-        for (int point = 1; point < 4; ++point) x[end + point] = std::scalbn(x[end + point] - x[end], -exponent);
-        x[end] = 0.0;
-    }
+    return is_unscaled(step.x, searched.x) && is_unscaled(step.y, searched.y) && is_unscaled(step.z, searched.z);
 }
 
 }  // namespace
+
+AxisDifferences::AxisDifferences(const double* coordinates, int axis)
+{
+    for (int end = 0; end < 2; ++end) {
+        const auto x = [&](int point) { return coordinates[12 * end + 3 * point + axis]; };
+        // Halved where a difference could overflow; exact, but for coordinates that then have others 2^2000 times as large beside
+        // them. Each end by itself: at the other one all may be tiny.
+        const double coordinate = std::max({std::abs(x(0)), std::abs(x(1)), std::abs(x(2)), std::abs(x(3))});
+        shift[end] = coordinate > 0x1p1021 ? 4 : 0;
+        const double factor = shift[end] == 0 ? 1.0 : 0x1p-4;
+        for (int i = 0; i < 3; ++i) {
+            value[end][i] = x(i + 1) * factor - x(0) * factor;
+            largest[end] = std::max(largest[end], std::abs(value[end][i]));
+        }
+    }
+}
+
+int AxisDifferences::exponent(double t_max) const
+{
+    const int from_start = largest[0] > 0.0 ? std::ilogb(largest[0]) + shift[0] : std::numeric_limits<int>::min();
+    const int from_end = largest[1] > 0.0 ? std::ilogb(largest[1]) + shift[1] + std::ilogb(t_max) : std::numeric_limits<int>::min();
+    return std::max(from_start, from_end);
+}
+
+void AxisDifferences::put(double (&start)[3], double (&end)[3], double t_max, int power) const
+{
+    const int exponent = std::ilogb(t_max);
+    const double significand = std::scalbn(t_max, -exponent);
+    for (int i = 0; i < 3; ++i) {
+        start[i] = std::scalbn(value[0][i], shift[0] + power);
+        const double q = std::scalbn(value[1][i], shift[1] + power + exponent);
+        end[i] = t_max == 1.0 ? q : (1.0 - t_max) * start[i] + significand * q;
+    }
+}
 
 RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin)
 {
@@ -54,17 +72,25 @@ RelativeMotion<double> scaled_relative_motion(const double* coordinates, double 
     }
 
     // As for most pairs. Coordinates beyond 2^1021 have differences of 0 or far too large ones, halved or not.
-    const Extents<double> e = extents(relative_motion<double>(exchanged, 1, 1.0));
-    if (is_unscaled(e.x) && is_unscaled(e.y) && is_unscaled(e.z)) return relative_motion<double>(exchanged, 1, t_max);
+    const Extents<double> step = extents(relative_motion<double>(exchanged, 1, 1.0));
+    const RelativeMotion<double> motion = relative_motion<double>(exchanged, 1, t_max);
+    if (all_unscaled(step, t_max == 1.0 ? step : extents(motion))) return motion;
 
-    double scaled[24];
+    RelativeMotion<double> scaled;
+    double Vector3<double>::*const component[] = {&Vector3<double>::x, &Vector3<double>::y, &Vector3<double>::z};
     for (int axis = 0; axis < 3; ++axis) {
-        double x[8];
-        for (int k = 0; k < 8; ++k) x[k] = exchanged[3 * k + axis];
-        scale_axis(x);
-        for (int k = 0; k < 8; ++k) scaled[3 * k + axis] = x[k];
+        const AxisDifferences differences{exchanged, axis};
+        double start[3] = {}, end[3] = {};
+        if (!differences.zero()) {
+            const int exponent = differences.exponent(t_max);
+            differences.put(start, end, t_max, exponent >= -100 && exponent < 100 ? 0 : -exponent);
+        }
+        for (int i = 0; i < 3; ++i) {
+            scaled.start[i].*component[axis] = start[i];
+            scaled.end[i].*component[axis] = end[i];
+        }
     }
-    return relative_motion<double>(scaled, 1, t_max);
+    return scaled;
 }
 
 }  // namespace fastccd::scalar

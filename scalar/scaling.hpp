@@ -15,4 +15,28 @@ using namespace FASTCCD_KERNEL_NAMESPACE;
 /// exchanged with x0; axes scaled where needed.
 RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin = 0);
 
+/// Coordinates of x1, x2, x3 along one axis relative to x0, at t = 0 and t = 1, with exponents that reach beyond those of double.
+class AxisDifferences {
+public:
+    /// Of finite coordinates (24, in the order of PairView). Differences come before scaling, which keeps the digits of small
+    /// differences of large coordinates.
+    AxisDifferences(const double* coordinates, int axis);
+
+    /// All are zero: the axis has no extent.
+    [[nodiscard]] bool zero() const { return largest[0] == 0.0 && largest[1] == 0.0; }
+
+    /// Of the largest |component| over [0, t_max], to within 2: (1 - t) p + t q at t = t_max is at most |p| + t |q|, and where it
+    /// cancels there is p. Not if zero().
+    [[nodiscard]] int exponent(double t_max) const;
+
+    /// Components of the motion over [0, t_max], multiplied by 2^power, by the formula of relative_motion(); t_max q is
+    /// formed without underflow. `power` within 1000 of -exponent(t_max). What underflows errs by some 2^-1074.
+    void put(double (&start)[3], double (&end)[3], double t_max, int power) const;
+
+private:
+    double value[2][3];  ///< To be multiplied by 2^shift.
+    int shift[2];
+    double largest[2] = {0.0, 0.0};  ///< Of the absolute values.
+};
+
 }  // namespace fastccd::scalar

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <fastccd/pair_view.hpp>
+#include <scaling.hpp>
 #include <separation_steps.hpp>
 
 namespace fastccd::scalar {
@@ -19,44 +20,34 @@ bool finite(const double* coordinates)
     return std::all_of(coordinates, coordinates + pair_coordinates, [](double x) { return std::isfinite(x); });
 }
 
-/// d and what follows from it, in other units.
+/// d and what follows from it, in other units. What allows for rounding is formed anew: of a subnormal d it was rounded itself.
 SeparationParameters in_units(const SeparationParameters& s, int exponent)
 {
-    SeparationParameters scaled;
-    scaled.distance = std::scalbn(s.distance, exponent);
-    scaled.threshold = std::scalbn(s.threshold, exponent);
+    SeparationParameters scaled{std::scalbn(s.distance, exponent)};
     scaled.stop = std::scalbn(s.stop, exponent);
     scaled.aim = std::scalbn(s.aim, exponent);
-    scaled.certain = std::scalbn(s.certain, exponent);
     return scaled;
 }
 
 /// The motion of a pair beyond the lanes' range, multiplied by the power of two that brings the largest extent near
-/// 1: the same on all axes, and for d, because distances are compared. Differences are taken first, which keeps the digits
-/// of small differences of large coordinates. Results that underflow err by 2^-1075, which separation_floor covers.
+/// 1: the same on all axes, and for d, because distances are compared. Results that underflow err by some 2^-1074, which
+/// separation_floor covers.
 RelativeMotion<double> scaled_motion(const double* coordinates, SearchParameters& parameters)
 {
-    constexpr int halving = 4;  // where a difference could overflow
-    double scaled[pair_coordinates] = {};
-    int shift[3], exponent = std::numeric_limits<int>::min();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        double largest_coordinate = 0.0, extent = 0.0;
-        for (std::size_t i = axis; i < pair_coordinates; i += 3)
-            largest_coordinate = std::max(largest_coordinate, std::abs(coordinates[i]));
-        shift[axis] = largest_coordinate > 0x1p1021 ? halving : 0;
-        const double factor = std::scalbn(1.0, -shift[axis]);
-        for (std::size_t end = 0; end < pair_coordinates; end += 12)
-            for (std::size_t i = end + axis + 3; i < end + 12; i += 3) {
-                scaled[i] = coordinates[i] * factor - coordinates[end + axis] * factor;
-                extent = std::max(extent, std::abs(scaled[i]));
-            }
-        if (extent > 0.0) exponent = std::max(exponent, std::ilogb(extent) + shift[axis]);
+    const AxisDifferences axes[] = {{coordinates, 0}, {coordinates, 1}, {coordinates, 2}};
+    int exponent = std::numeric_limits<int>::min();
+    for (const AxisDifferences& differences : axes)
+        if (!differences.zero()) exponent = std::max(exponent, differences.exponent(parameters.t_max));
+    RelativeMotion<double> r{};
+    if (exponent == std::numeric_limits<int>::min()) return r;
+    parameters.separation = in_units(parameters.separation, -exponent);
+    double start[3][3], end[3][3];
+    for (int axis = 0; axis < 3; ++axis) axes[axis].put(start[axis], end[axis], parameters.t_max, -exponent);
+    for (int i = 0; i < 3; ++i) {
+        r.start[i] = {start[0][i], start[1][i], start[2][i]};
+        r.end[i] = {end[0][i], end[1][i], end[2][i]};
     }
-    if (exponent != std::numeric_limits<int>::min()) {
-        for (std::size_t i = 0; i < pair_coordinates; ++i) scaled[i] = std::scalbn(scaled[i], shift[i % 3] - exponent);
-        parameters.separation = in_units(parameters.separation, -exponent);
-    }
-    return relative_motion<double>(scaled, 1, parameters.t_max);
+    return r;
 }
 
 template <PairKind kind>

@@ -83,8 +83,7 @@ done
 mutant 'quadratic_bound = 0' scalar/magnitudes.hpp 's/\* ErrorBounds::u \* m;(?=\s*return min\(bound \+ underflow_share \* from_extents, from_extents\);\s*\}\s*\/\/\/ Bound of the Bernstein)/* 0 * m;/' error_bounds_test
 mutant 'cubic_bound = 0' scalar/magnitudes.hpp 's/(\(3 \* bounds\.rho \+ 18 \+ ErrorBounds::slack\)) \* ErrorBounds::u/$1 * 0/' error_bounds_test
 mutant 'underflow_share = 0' scalar/magnitudes.hpp 's/underflow_share = 0x1p-40/underflow_share = 0/' error_bounds_test
-mutant 'volume_floor = 0' $bounds 's/volume_floor = 0x1p-800/volume_floor = 0/' error_bounds_test
-mutant 'area_floor = 0' $bounds 's/area_floor = 0x1p-900/area_floor = 0/' error_bounds_test
+mutant 'length_floor = 0' $bounds 's/length_floor = 0x1p-266/length_floor = 0/' error_bounds_test
 mutant 'smallest_volume = 0' $bounds 's/smallest_volume = 0x1p-300/smallest_volume = 0/' same_bits_test certificates_test truth_test stress
 mutant 'lanes without largest extent' $bounds 's/t_max == 1\.0 \? largest_extent : 0\.25 \* largest_extent \* t_max/1e308/' certificates_test same_bits_test truth_test stress
 mutant 'rho of shorter steps = 1' $bounds 's/t_max == 1\.0 \? 1\.0 : 10\.0/1.0/' error_bounds_test
@@ -154,6 +153,11 @@ mutant 'several: narrow intervals halved' scalar/ordered_search.hpp 's/if \(narr
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/\(s \* t_max\) \* \(1\.0 - 0x1p-52\)/s * t_max/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
 mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
+mutant 'range: gaps along subnormal axes without a floor' kernels/certificates.hpp 's/max\(extent, broadcast<L>\(length_floor\)\)/extent/' extreme_range_test
+mutant 'range: short steps scaled as if they were whole' scalar/scaling.cpp 's/within_range\(step\) && within_range\(searched\)/within_range(step)/' extreme_range_test
+mutant 'range: both ends halved' scalar/scaling.cpp 's/coordinate > 0x1p1021 \? 4 : 0/4/' extreme_range_test
+mutant 'range: subnormal times rounded up' kernels/search_parameters.hpp 's/product - 0x1p-1073 : 0\.0/product : 0.0/' extreme_range_test
+mutant 'range: roots as coarse as times' scalar/contact_roots.hpp 's/widest_leaf = 0x1p-30/widest_leaf = 1/' extreme_range_test
 
 # ---- Area inclusion loosened
 # Not among them, because nothing observable changes: the term delta^2 C2^2 / 2: C1 bounds the edges at every time of the
