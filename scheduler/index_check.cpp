@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <parallel_ranges.hpp>
 
 namespace fastccd {
 
@@ -14,7 +13,7 @@ Status check_pairs(const std::int32_t* pairs, std::size_t count, std::size_t fir
         return in_range(pairs[2 * i], first_size) && in_range(pairs[2 * i + 1], second_size);
     };
     constexpr std::size_t grain = 1 << 16;
-    const auto scan = [&](const tbb::blocked_range<std::size_t>& range, std::size_t found) {
+    const auto scan = [&](const Range& range, std::size_t found) {
         if (found < range.begin()) return found;
         // Extremes in 32 bits, without a branch: compilers turn this into vector instructions.
         std::int32_t least = 0, largest_first = -1, largest_second = -1;
@@ -29,12 +28,8 @@ Status check_pairs(const std::int32_t* pairs, std::size_t count, std::size_t fir
         while (good(i)) ++i;
         return std::min(found, i);
     };
-    // Not to be cut short when the caller's task group is cancelled.
-    tbb::task_group_context context{tbb::task_group_context::isolated};
     const std::size_t bad =
-        count <= grain ? scan({0, count}, count)
-                       : tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, count, grain), count, scan,
-                                              [](std::size_t a, std::size_t b) { return std::min(a, b); }, context);
+        reduce_ranges(count, grain, count, scan, [](std::size_t a, std::size_t b) { return std::min(a, b); });
     if (bad == count) return {};
     const bool first_is_bad = !in_range(pairs[2 * bad], first_size);
     return {Error::index_out_of_range, bad, pairs[2 * bad + (first_is_bad ? 0 : 1)]};

@@ -5,11 +5,8 @@
 #include <limits>
 #include <memory>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
 #include <fastccd/aligned_doubles.hpp>
+#include <parallel_ranges.hpp>
 
 namespace fastccd {
 
@@ -51,30 +48,26 @@ struct Bounds {
 
 constexpr std::size_t grain = 4096;
 
-/// Not to be cut short when the caller's task group is cancelled.
 template <class Body>
 void in_parallel(std::size_t size, const Body& body)
 {
-    tbb::task_group_context context{tbb::task_group_context::isolated};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, size, grain), [&](const auto& range) {
+    for_each_range(size, grain, [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-    }, context);
+    });
 }
 
 Bounds bounds_of(const IndexedSource& source)
 {
-    tbb::task_group_context context{tbb::task_group_context::isolated};
-    return tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, source.vertex_count, grain), Bounds{},
-        [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
+    return reduce_ranges(
+        source.vertex_count, grain, Bounds{},
+        [&](const Range& range, Bounds bounds) {
             for (std::size_t i = range.begin(); i != range.end(); ++i) bounds.include(source.records + record_doubles * i);
             return bounds;
         },
         [](Bounds a, const Bounds& b) {
             a.include(b);
             return a;
-        },
-        context);
+        });
 }
 
 struct Grid {

@@ -1,12 +1,10 @@
 // Vertex records and the checks of the indices.
 #include <fastccd/indexed.hpp>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <guarded.hpp>
 #include <index_check.hpp>
 #include <mesh_boxes.hpp>
+#include <parallel_ranges.hpp>
 
 namespace fastccd {
 
@@ -29,9 +27,7 @@ constexpr std::size_t record_doubles = 8;
 void copy_positions(const PositionView& start, const PositionView& end, double* records)
 {
     constexpr std::size_t grain = 4096;  // 256 KiB of records a task
-    // Not to be cut short when the caller's task group is cancelled.
-    tbb::task_group_context context{tbb::task_group_context::isolated};
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, start.size(), grain), [&](const auto& range) {
+    for_each_range(start.size(), grain, [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             double* const record = records + record_doubles * i;
             for (int axis = 0; axis < 3; ++axis) {
@@ -40,7 +36,7 @@ void copy_positions(const PositionView& start, const PositionView& end, double* 
             }
             record[6] = record[7] = 0.0;
         }
-    }, context);
+    });
 }
 
 }  // namespace

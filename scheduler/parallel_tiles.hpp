@@ -6,11 +6,10 @@
 #include <memory>
 #include <new>
 
-#include <tbb/blocked_range.h>
 #include <tbb/cache_aligned_allocator.h>
 #include <tbb/combinable.h>
-#include <tbb/parallel_for.h>
 
+#include <parallel_ranges.hpp>
 #include <tile_runner.hpp>
 
 namespace fastccd {
@@ -83,16 +82,10 @@ Summary for_each_tile(const Job& job, Workers<Worker>& workers, Cutoff cutoff, C
         run_tile(job, first, count, until, worker.scratch, worker.totals);
         consume(worker, first, count);
     };
-    if (tiles == 1) {
-        run(0, workers.local());
-    } else if (tiles > 1) {
-        // A context of its own: cancelling the caller's task group must not leave pairs unanswered.
-        tbb::task_group_context context{tbb::task_group_context::isolated};
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiles), [&](const auto& range) {
-            Worker& worker = workers.local();
-            for (std::size_t tile = range.begin(); tile != range.end(); ++tile) run(tile, worker);
-        }, context);
-    }
+    for_each_range(tiles, 1, [&](const Range& range) {
+        Worker& worker = workers.local();
+        for (std::size_t tile = range.begin(); tile != range.end(); ++tile) run(tile, worker);
+    });
     Summary summary;
     summary.pairs = size;
     summary.isa = job.kernels != nullptr ? job.kernels->isa : Isa::scalar;

@@ -4,6 +4,8 @@
 
 #include <sys/resource.h>
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <cstdint>
@@ -69,6 +71,31 @@ TEST(OutOfMemoryDeathTest, OfTheSystemIsAnErrorOfEveryCall)
     if (!refuses_every_allocation()) GTEST_SKIP() << "NOT TESTED: a sanitizer needs memory of its own; nothing was checked here";
     GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process that has run nothing of the library before
     EXPECT_EXIT(exit_after_calls_without_memory(), ::testing::ExitedWithCode(0), "");
+}
+
+/// For a process of its own, in which oneTBB may start far more threads than the system then gives. 0 if calls answer all the same.
+[[noreturn]] void exit_after_calls_without_threads()
+{
+    constexpr int threads = 4096;
+    Pairs pairs{100'000};
+    Options options;
+    options.reference = true;  // takes so long that all of them are wanted
+    const tbb::global_control many{tbb::global_control::max_allowed_parallelism, threads};
+    tbb::task_arena arena{threads};
+    const rlimit some{2'000'000'000, 2'000'000'000};
+    setrlimit(RLIMIT_AS, &some);
+    bool answered = true;
+    arena.execute([&] { answered = time_of_impact(PairKind::vertex_face, pairs.view, options, pairs.toi).ok(); });
+    std::vector<double> expected(pairs.toi.size());
+    tbb::task_arena{1}.execute([&] { answered &= time_of_impact(PairKind::vertex_face, pairs.view, options, expected).ok(); });
+    std::_Exit(answered && pairs.toi == expected ? 0 : 1);
+}
+
+TEST(OutOfThreadsDeathTest, LeavesTheCallersThread)
+{
+    if (!refuses_every_allocation()) GTEST_SKIP() << "NOT TESTED: a sanitizer needs memory of its own; nothing was checked here";
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(exit_after_calls_without_threads(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(OutOfMemory, InATaskIsAnError)

@@ -1,0 +1,43 @@
+// Loops over ranges in parallel, in the caller's oneTBB arena.
+#pragma once
+
+#include <cstddef>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+namespace fastccd {
+
+using Range = tbb::blocked_range<std::size_t>;
+
+/// Whether the system lets this process have the threads that oneTBB may start for the caller's arena. oneTBB's workers start one
+/// another, and if the system refuses one to a worker (a limit on processes or memory), that ends the program. So as many
+/// threads as never before are started here for a moment first. False: keep to the caller's thread.
+bool workers_available() noexcept;
+
+/// body(range) for parts of [0, size) that are together all of it; a part of at most `grain` is not divided.
+template <class Body>
+void for_each_range(std::size_t size, std::size_t grain, const Body& body)
+{
+    if (size == 0) return;
+    if (size <= grain || !workers_available()) {
+        body(Range{0, size});
+        return;
+    }
+    // A context of its own: cancelling the caller's task group must not leave anything undone.
+    tbb::task_group_context context{tbb::task_group_context::isolated};
+    tbb::parallel_for(Range{0, size, grain}, body, context);
+}
+
+/// join of body(range, identity) over such parts.
+template <class Value, class Body, class Join>
+Value reduce_ranges(std::size_t size, std::size_t grain, const Value& identity, const Body& body, const Join& join)
+{
+    if (size == 0) return identity;
+    if (size <= grain || !workers_available()) return body(Range{0, size}, identity);
+    tbb::task_group_context context{tbb::task_group_context::isolated};
+    return tbb::parallel_reduce(Range{0, size, grain}, identity, body, join, context);
+}
+
+}  // namespace fastccd

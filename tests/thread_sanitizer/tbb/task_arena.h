@@ -1,0 +1,10 @@
+// Stand-in for oneTBB's header, see workers.h.
+#pragma once
+
+#include "workers.h"
+
+namespace tbb::this_task_arena {
+
+inline int max_concurrency() { return static_cast<int>(stand_in::worker_count); }
+
+}  // namespace tbb::this_task_arena
