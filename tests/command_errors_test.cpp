@@ -14,6 +14,7 @@
 
 #include <fastccd/isa.hpp>
 
+#include "narrow_phase_run.hpp"
 #include "progress.hpp"
 
 namespace fastccd::testing {
@@ -247,6 +248,108 @@ TEST(CommandErrors, SignalsEndItCleanly)
         EXPECT_EQ(directory.names(), std::vector<std::string>{"hits.csv"});
         EXPECT_EQ(read_text(hits), "old");
     }
+}
+
+/// As from `timeout`, which sends a signal to its child and then to the group.
+TEST(CommandErrors, TheSameSignalTwiceAtOnceEndsItCleanly)
+{
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const ScratchDirectory directory;
+        const pid_t child = ::fork();
+        ASSERT_GE(child, 0);
+        if (child == 0) {
+            become_command({"random", "--kind", "vf", "--pairs", "10000000000", "--quiet", "--hits", directory / "hits.csv"});
+        }
+        while (directory.names().empty()) ::usleep(1000);  // until it writes
+        ::kill(child, signal);
+        ::usleep(100);
+        ::kill(child, signal);
+        int status = 0;
+        ASSERT_EQ(::waitpid(child, &status, 0), child);
+        EXPECT_EQ(exit_status(status), 128 + signal);
+        EXPECT_TRUE(directory.names().empty());
+    }
+}
+
+/// Runs under a limit that only the command has.
+Outcome run_limited(int resource, rlim_t limit, const Arguments& arguments)
+{
+    rlimit before{};
+    ::getrlimit(static_cast<__rlimit_resource>(resource), &before);
+    const rlimit less{.rlim_cur = limit, .rlim_max = before.rlim_max};
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &less);
+    const Outcome outcome = run(arguments);
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &before);
+    return outcome;
+}
+
+TEST(CommandErrors, FilesTooLargeLeaveNothing)
+{
+    const ScratchDirectory directory;
+    const Outcome outcome =
+        run_limited(RLIMIT_FSIZE, 100'000, {"random", "--kind", "vf", "--pairs", "300000", "--quiet", "--save", directory / "large.npy"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.error, "fastccd: " + (directory / "large.npy") + ": cannot be written: File too large\n");
+    EXPECT_TRUE(directory.names().empty());
+}
+
+/// oneTBB would end the process when a worker cannot start another.
+TEST(CommandErrors, RefusedThreadsAreNamed)
+{
+    if (sanitized) GTEST_SKIP() << "sanitizers need more memory than the limit of this test";
+    const ScratchDirectory directory;
+    const Outcome outcome = run_limited(RLIMIT_AS, 2'000'000'000,
+                                        {"random", "--kind", "vf", "--pairs", "300000", "--threads", "4096", "--hits", directory / "hits.csv"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.error, "fastccd: the system refuses 4096 threads (a limit on processes or memory?); ask for fewer with --threads\n");
+    EXPECT_TRUE(directory.names().empty());
+}
+
+TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
+{
+    const ScratchDirectory directory;
+    const std::string file = directory / "file";
+    const auto refused = [&](const Arguments& more, const std::string& words) {
+        Arguments arguments{"random", "--kind", "vf", "--pairs", "16", "--quiet"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_NE(outcome.error.find(words), std::string::npos) << outcome.error;
+    };
+    refused({"--hits", file, "--save", file}, "written already");
+    refused({"--hits", directory / "./file", "--save", file}, "written already");
+    refused({"--hits", ""}, "--hits: the value is empty");
+    refused({"--save", ""}, "--save: the value is empty");
+    EXPECT_TRUE(directory.names().empty());
+    EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "16", "--quiet", "--hits", "/dev/null", "--save", "/dev/null"}).status, 0);
+}
+
+TEST(CommandErrors, HelpThatNobodyGetsIsAnError)
+{
+    for (const char* option : {"--help", "--version"}) {
+        const Outcome full = run({option}, {}, {.path = "/dev/full"});
+        EXPECT_EQ(full.status, 1);
+        EXPECT_EQ(full.error, "fastccd: standard output: cannot be written: No space left on device\n");
+        EXPECT_EQ(run({option}, {}, {.no_reader = true}).status, 128 + SIGPIPE);
+    }
+}
+
+TEST(PieceSize, FollowsTheTime)
+{
+    using tools::PieceSize;
+    PieceSize size;
+    EXPECT_EQ(size.pairs(), PieceSize::least);
+    size.took(size.pairs(), 1.0);
+    EXPECT_EQ(size.pairs(), PieceSize::least);
+    for (int i = 0; i < 20; ++i) size.took(size.pairs(), 1e-9);
+    EXPECT_EQ(size.pairs(), PieceSize::most);
+    size.took(PieceSize::least, 1e-9);  // the rest of a buffer says little
+    EXPECT_EQ(size.pairs(), PieceSize::most);
+    size.took(PieceSize::most, 0.05);
+    EXPECT_EQ(size.pairs(), PieceSize::most);
+    size.took(PieceSize::most, 0.2);
+    EXPECT_EQ(size.pairs(), PieceSize::most / 4);
+    EXPECT_EQ(size.pairs() % 8, 0u);
 }
 
 TEST(ProgressLine, FitsEveryTerminal)

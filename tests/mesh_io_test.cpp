@@ -237,6 +237,14 @@ TEST(MeshIo, ReadsObj)
               (std::vector<std::int32_t>{0, 0, 0}));
 }
 
+/// Unknown statements are skipped, so that it would hide the first vertex.
+TEST(MeshIo, ObjAfterAByteOrderMark)
+{
+    const Mesh mesh = parse_obj("\xEF\xBB\xBFv 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n");
+    EXPECT_EQ(mesh.positions, (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
+    EXPECT_EQ(mesh.faces, (std::vector<std::int32_t>{0, 1, 2}));
+}
+
 TEST(MeshIo, ContentDecidesForPly)
 {
     EXPECT_EQ(parse_mesh(triangle, "mesh.obj").faces, triangle_faces);

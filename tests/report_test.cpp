@@ -258,6 +258,29 @@ TEST(Report, MarksBrokenPromises)
     EXPECT_NE(read_text((directory / "page") + "/hard_cases.svg").find("class=\"wrong\""), std::string::npos);
 }
 
+/// As of a scene that has no candidates of a kind, or of what was too short for the clock.
+void remove_rates(Json& json)
+{
+    if (json.is_object()) json.erase("pairs_per_second");
+    for (Json& part : json)
+        if (part.is_structured()) remove_rates(part);
+}
+
+TEST(Report, DrawsWhatHasNoRate)
+{
+    const ScratchDirectory directory;
+    Json altered = report().json;
+    remove_rates(altered);
+    const Outcome outcome = run({"report", "--draw", directory.write("altered.json", altered.dump()), "--out", directory / "page"});
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_EQ(files_in(directory / "page"), files_in(report().folder()));
+    for (const std::string& name : files_in(directory / "page"))
+        if (name.ends_with(".svg")) {
+            const std::string picture = read_text((directory / "page") + "/" + name);
+            for (const char* no_number : {"nan ", "nan\"", "inf ", "inf\""}) EXPECT_EQ(picture.find(no_number), std::string::npos) << name;
+        }
+}
+
 TEST(Report, InterruptedLeavesWhatWasThere)
 {
     const ScratchDirectory directory;
@@ -291,8 +314,10 @@ TEST(Report, NamesWhatIsWrong)
     expect({"report", "--pairs", "0"}, 2, "whole number");
     expect({"report", "--out", file}, 1, file);
     expect({"report", "--draw", file, "--out", directory / "out"}, 1, "is no report.json");
+    expect({"report", "--draw", directory.write("text.json", "{\"format\": \"1\"}"), "--out", directory / "out"}, 1, "text.json: is no report.json");
+    expect({"report", "--out", ""}, 2, "--out: the value is empty");
     expect({"report", "--draw", directory.write("half.json", "{\"format\": 1}"), "--out", directory / "out"}, 1, "half.json");
-    EXPECT_EQ(directory.names().size(), 2u);
+    EXPECT_EQ(directory.names().size(), 3u);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ void random_command(const RandomOptions& options)
         .source = fmt::format("{} random pairs in the unit cube, seed {}", with_commas(options.pairs), options.seed),
         .pairs = options.pairs,
         .seed = options.seed};
+    if (!options.save.empty()) refuse_overwriting_output(options.common, options.save);
     run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
         std::optional<NpyWriter> saved;
         if (!options.save.empty()) {
@@ -71,6 +72,7 @@ void add_random_command(CLI::App& app)
         ->check([](const std::string& path) {
             return OutputFile::is_standard_output(path) ? "the report goes to standard output; name a file" : "";
         })
+        ->check(not_empty())
         ->type_name("OUT.npy");
     add_pair_options(*command, options->common);
     command->callback([options] { random_command(*options); });

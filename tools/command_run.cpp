@@ -65,6 +65,7 @@ void add_run_command(CLI::App& app)
     command
         ->add_option("--range", options->range,
                      "Only pairs A to B-1 of all files; pairs keep their numbers")
+        ->check(not_empty())
         ->type_name("A:B");
     command->add_flag("--round", options->round, "Take the nearest double where a rational is none");
     add_pair_options(*command, options->common);

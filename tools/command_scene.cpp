@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -6,6 +7,7 @@
 #include "commands.hpp"
 #include "common_options.hpp"
 #include "output_file.hpp"
+#include "scene/saved_pairs.hpp"
 #include "scene/scene_report.hpp"
 #include "scene/scene_run.hpp"
 
@@ -29,6 +31,7 @@ void add_scene_command(CLI::App& app)
         ->check([](const std::string& path) {
             return OutputFile::is_standard_output(path) ? "is to be a folder" : "";
         })
+        ->check(not_empty())
         ->type_name("DIR");
     add_search_options(*command, options->common);
     add_separation_options(*command, options->common);
@@ -39,6 +42,9 @@ void add_scene_command(CLI::App& app)
             throw CLI::ValidationError("FRAME", "a step is from one frame to another; name two or more");
         }
         refuse_overwriting_input(options->common, options->frames);
+        const std::string hits = std::filesystem::path{options->common.hits}.filename();
+        if (!options->save_pairs.empty() && SavedPairs::is_name_of_pairs(hits))
+            refuse_overwriting_output(options->common, std::filesystem::path{options->save_pairs} / hits);
         print_scene_report(*options, run_scene(*options));
     });
 }

@@ -14,6 +14,8 @@
 
 #include <fastccd/isa.hpp>
 
+#include "output_file.hpp"
+
 namespace fastccd::tools {
 namespace {
 
@@ -82,7 +84,7 @@ void add_search_options(CLI::App& command, CommonOptions& options)
 {
     command
         .add_option("--tolerance", options.narrow_phase.tolerance,
-                    "Width of the time interval in which the first contact is\nlocated; the whole step is 1")
+                    "Width of the time interval in which the first contact is\nlocated; the whole step is 1. Below 2^-50 as 2^-50")
         ->check(number_check("a positive finite number", [](double x) { return x > 0 && std::isfinite(x); }))
         ->type_name("T")
         ->capture_default_str();
@@ -134,6 +136,7 @@ void add_report_options(CLI::App& command, CommonOptions& options, const std::st
                     fmt::format("Write the contacts as CSV: {}.\n"
                                 "- is standard output, and moves the report to standard error",
                                 hits_columns))
+        ->check(not_empty())
         ->type_name("OUT.csv");
     command.add_flag("--proof", options.proof, "A last column proven in --hits: 1, or 0 for a contact that is\npossible to within rounding")
         ->needs("--hits");
@@ -165,6 +168,21 @@ void refuse_overwriting_input(const CommonOptions& options, const std::vector<st
             throw CLI::ValidationError("--hits", fmt::format("{} is an input", options.hits));
         }
     }
+}
+
+void refuse_overwriting_output(const CommonOptions& options, const std::filesystem::path& output)
+{
+    if (options.hits.empty() || OutputFile::is_standard_output(options.hits)) return;
+    std::error_code unknown;
+    const auto same = [&](const std::filesystem::path& path) { return std::filesystem::weakly_canonical(path, unknown); };
+    // What is no ordinary file, such as /dev/null, takes both.
+    if (same(options.hits) != same(output) || std::filesystem::is_other(options.hits, unknown)) return;
+    throw CLI::ValidationError("--hits", fmt::format("{} is written already, by another option", options.hits));
+}
+
+CLI::Validator not_empty()
+{
+    return {[](std::string& text) { return text.empty() ? std::string{"the value is empty"} : std::string{}; }, std::string{}};
 }
 
 PairRange parse_range(const std::string& text, std::size_t pairs)

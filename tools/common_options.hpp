@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 namespace CLI {
 class App;
 class Option;
+class Validator;
 }
 
 namespace fastccd::tools {
@@ -53,6 +55,12 @@ void add_pair_options(CLI::App& command, PairOptions& options);
 
 /// Throws CLI::ValidationError if the hits would take the place of one of `inputs`.
 void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs);
+
+/// Throws CLI::ValidationError if the hits would take the place of `output`, another file that is written, or it theirs.
+void refuse_overwriting_output(const CommonOptions& options, const std::filesystem::path& output);
+
+/// Refuses the empty string, as of a variable of the shell that is not set.
+[[nodiscard]] CLI::Validator not_empty();
 
 /// Adds an option that takes a decimal number in [least, most]. (CLI11 by itself reads 010 as 8.)
 CLI::Option* add_whole_number(CLI::App& command, const std::string& option, std::uint64_t& value, std::uint64_t least,

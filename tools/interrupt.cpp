@@ -4,15 +4,34 @@
 #include <initializer_list>
 
 #include <signal.h>
+#include <time.h>
 
 namespace fastccd::tools {
 namespace {
 
 volatile std::sig_atomic_t pending_signal = 0;
+timespec first_signal{};
+
+/// A second Ctrl-C ends a process that cannot get to check_interrupt. `timeout` sends a signal to its child and then to the
+/// group, so that the same one comes twice at once: only one that comes later than a finger is meant like that.
+constexpr double seconds_until_second = 0.3;
 
 extern "C" void note_signal(int signal)
 {
-    pending_signal = signal;
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    if (pending_signal == 0) {
+        first_signal = now;
+        pending_signal = signal;
+        return;
+    }
+    const double seconds =
+        static_cast<double>(now.tv_sec - first_signal.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - first_signal.tv_nsec);
+    if (seconds < seconds_until_second) return;
+    struct sigaction action {};
+    action.sa_handler = SIG_DFL;
+    sigaction(signal, &action, nullptr);
+    raise(signal);  // delivered on return from here
 }
 
 }  // namespace
@@ -25,13 +44,12 @@ void install_signal_handlers()
         if (sigaction(signal, nullptr, &previous) == 0 && previous.sa_handler == SIG_IGN) continue;
         struct sigaction action {};
         action.sa_handler = note_signal;
-        // No SA_RESTART: a write blocked on a full pipe has to wake up. Reset after the first: a
-        // second Ctrl-C ends a process that cannot get to check_interrupt.
-        action.sa_flags = static_cast<int>(SA_RESETHAND);
-        sigemptyset(&action.sa_mask);
+        // No SA_RESTART: a write blocked on a full pipe has to wake up. One handler at a time, whatever comes in.
+        for (const int other : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&action.sa_mask, other);
         sigaction(signal, &action, nullptr);
     }
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 void check_interrupt()

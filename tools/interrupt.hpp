@@ -11,8 +11,9 @@ struct Interrupted {
 /// The reader of our output went away (`| head`). Nothing more to say, and nobody to say it to.
 struct BrokenPipe {};
 
-/// Notes SIGINT, SIGTERM and SIGHUP for check_interrupt; a second one of a kind ends the process at
-/// once. Writing to a closed pipe becomes an error (BrokenPipe) instead of a signal.
+/// Notes SIGINT, SIGTERM and SIGHUP for check_interrupt; one more, a third of a second or more after the
+/// first, ends the process at once. Writing to a closed pipe becomes an error (BrokenPipe) instead of a
+/// signal, and so does writing beyond the largest file allowed.
 void install_signal_handlers();
 
 /// Throws Interrupted if a signal has come in. Call it at least every tenth of a second of work.

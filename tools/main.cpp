@@ -7,9 +7,11 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
@@ -60,7 +62,8 @@ constexpr const char* footer = R"(Examples:
   fastccd isa
 
 Exit status: 0 all pairs answered, invalid input by name; 1 a file cannot be used;
-2 the command line is wrong; 130 interrupted.)";
+2 the command line is wrong; 128 + n ended by signal n: 130 by Ctrl-C, 143 by
+termination, 141 because the reader of the output went away.)";
 
 }  // namespace
 
@@ -93,7 +96,10 @@ int main(int argc, char** argv)
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : exit_usage;
+        if (app.exit(error) != 0) return exit_usage;
+        if (std::cout.flush()) return 0;  // help, or the version
+        if (errno == EPIPE) return 128 + SIGPIPE;
+        return fail(fmt::format("standard output: cannot be written: {}", std::generic_category().message(errno)));
     } catch (const Interrupted& interrupted) {
         return 128 + interrupted.signal;
     } catch (const BrokenPipe&) {

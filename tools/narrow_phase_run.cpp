@@ -14,6 +14,7 @@
 
 #include "hits_file.hpp"
 #include "interrupt.hpp"
+#include "pair_slice.hpp"
 #include "progress.hpp"
 #include "report_totals.hpp"
 #include "threads.hpp"
@@ -48,6 +49,18 @@ NarrowPhaseRun::NarrowPhaseRun(const PairOptions& options, HitsFile* hits, Progr
 }
 
 void NarrowPhaseRun::answer(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth)
+{
+    for (std::size_t begin = 0; begin < pairs.size();) {
+        const std::size_t count = std::min(piece_size_.pairs(), pairs.size() - begin);
+        const double before = totals_.seconds;
+        answer_piece(slice(pairs, begin, begin + count), first_pair + begin,
+                     truth.empty() ? truth : truth.subspan(begin, count));
+        piece_size_.took(count, totals_.seconds - before);
+        begin += count;
+    }
+}
+
+void NarrowPhaseRun::answer_piece(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth)
 {
     check_interrupt();
     contacts_.clear();

@@ -1,6 +1,7 @@
 // The narrow phase over more pairs than one call takes: totals, contacts to a file, time.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -18,9 +19,33 @@ namespace fastccd::tools {
 class HitsFile;
 class Progress;
 
-/// Pairs answered at a time: a multiple of 8, and so many (48 MiB of packed pairs) that threads
-/// rarely wait for the last of them, so few that Ctrl-C and the progress bar do not wait long.
+/// Pairs read or made at a time, and the most that are answered at a time: a multiple of 8, and so many (48 MiB
+/// of packed pairs) that threads rarely wait for the last of them.
 inline constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
+
+/// How many pairs are answered at a time, so that Ctrl-C and the progress bar never wait long: a pair takes
+/// nanoseconds, or with exact verdicts up to a thousandth of a second.
+class PieceSize {
+public:
+    /// Multiples of 8.
+    static constexpr std::size_t least = 256, most = chunk_pairs;
+
+    [[nodiscard]] std::size_t pairs() const noexcept { return pairs_; }
+
+    /// After a piece of `pairs` pairs.
+    void took(std::size_t pairs, double seconds) noexcept
+    {
+        if (seconds > 0.1) {
+            pairs_ = std::max(least, pairs_ / 4);
+        } else if (pairs >= pairs_ && seconds < 0.02) {
+            pairs_ = std::min(most, pairs_ * 4);
+        }
+    }
+
+private:
+    std::size_t pairs_ = least;
+};
+static_assert(PieceSize::least % 8 == 0 && PieceSize::most % PieceSize::least == 0);
 
 /// What is asked, for the report.
 struct Question {
@@ -62,13 +87,14 @@ public:
     /// `hits`, `progress`: may be null.
     NarrowPhaseRun(const PairOptions& options, HitsFile* hits, Progress* progress);
 
-    /// Answers `pairs`, numbered from `first_pair`. `truth`, when not empty, has the known answer (1:
+    /// Answers `pairs`, blocked or interleaved, numbered from `first_pair`. `truth`, when not empty, has the known answer (1:
     /// contact in [0, 1]) of each. Throws Interrupted after a signal, InputError if --hits fails.
     void answer(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth = {});
 
     [[nodiscard]] const Totals& totals() const noexcept { return totals_; }
 
 private:
+    void answer_piece(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth);
     void find(const PairView& pairs, Summary& summary);
     void find_with_roots(const PairView& pairs, Summary& summary);
     void add(const Summary& part, std::size_t first_pair);
@@ -78,6 +104,7 @@ private:
     HitsFile* hits_;
     Progress* progress_;
     Totals totals_;
+    PieceSize piece_size_;
     // Of the current piece, numbered from its first pair; kept to reuse their memory.
     std::vector<Contact> contacts_;
     std::vector<std::size_t> invalid_;

@@ -20,14 +20,21 @@ Series series_of_isa(const std::string& isa)
     return isa == "sse2" ? Series::orange : Series::grey;
 }
 
-/// The least and the most of what is to be in a picture.
-struct Extent {
-    double least = HUGE_VAL, most = 0;
+/// The least and the most of what is to be in a picture. A rate of 0 stands for none (million_pairs_per_second), as of a scene
+/// without candidates of a kind: it has no place on a logarithmic axis.
+class Extent {
+public:
     void add(double value)
     {
-        least = std::min(least, value);
-        most = std::max(most, value);
+        if (!(value > 0) || !std::isfinite(value)) return;
+        least_ = std::min(least_, value);
+        most_ = std::max(most_, value);
     }
+    [[nodiscard]] double least() const { return most_ > 0 ? least_ : 1; }
+    [[nodiscard]] double most() const { return most_ > 0 ? most_ : 1; }
+
+private:
+    double least_ = HUGE_VAL, most_ = 0;
 };
 
 /// Points of one series with their curve and legend.
@@ -57,7 +64,7 @@ Picture figure_1(const Json& table)
     Chart chart{"Time for 10 million random pairs against E_tol",
                 "Figure 1 of the paper, on this machine",
                 std::move(x),
-                log_axis("seconds", extent.least, extent.most),
+                log_axis("seconds", extent.least(), extent.most()),
                 400,
                 3};
     chart.level(exact, fmt::format("exactCCD, {:g} s (2014)", exact), Series::grey);
@@ -106,12 +113,12 @@ Picture speed_error(const Json& part, const std::string& kind)
         }
     }
     if (all.empty()) errors.add(1e-9);  // so few pairs that none touches
-    Axis x = log_axis("error of the time of impact: median, and line to the worst", errors.least, errors.most);
+    Axis x = log_axis("error of the time of impact: median, and line to the worst", errors.least(), errors.most());
     const double right_end = x.high;
     Chart chart{fmt::format("Speed against error: {} pairs", kind_label(kind)),
                 "Pairs per second on one thread against the error of the time of impact, for every instruction set and E_tol",
                 std::move(x),
-                log_axis("million pairs per second, one thread", 0.9 * speeds.least, 1.25 * speeds.most),
+                log_axis("million pairs per second, one thread", 0.9 * speeds.least(), 1.25 * speeds.most()),
                 400 + 18.0 * static_cast<double>(peers.size()),
                 2 + peers.size()};
 
@@ -124,6 +131,7 @@ Picture speed_error(const Json& part, const std::string& kind)
 
     const auto mark = [&](const Json& point, Series series, const std::string& name) {
         const double rate = million_pairs_per_second(point.at("timing"));
+        if (!(rate > 0)) return;  // too short for the clock
         const std::string tooltip =
             fmt::format("{}: {:.3g} M pairs/s ({}); {}", name, rate, how(point.at("timing")), wrong_answers(point));
         if (point.at("absolute_error").is_null())
@@ -198,7 +206,7 @@ Picture scene_speeds(const Json& part)
 
     constexpr double left = 176, row_height = 22, top = 38;
     const double floor = top + row_height * static_cast<double>(rows.size());
-    const Axis x = log_axis("million pairs per second", extent.least, extent.most);
+    const Axis x = log_axis("million pairs per second", extent.least(), extent.most());
     const auto place = [&](double rate) { return left + x.share(rate) * (Svg::width - 22 - left); };
     Svg svg{"Scenes: speed of every instruction set", "Pairs per second on candidates of scenes, and the paper's own",
             floor + 84};
@@ -212,6 +220,7 @@ Picture scene_speeds(const Json& part)
         svg.text({left - 8, y + 4}, rows[i].label, Anchor::end);
         for (const auto& [series, timing] : rows[i].timings) {
             const double rate = million_pairs_per_second(*timing);
+            if (!(rate > 0)) continue;  // no candidates of this kind
             svg.marker({place(rate), y}, series, fmt::format("{}: {:.3g} M pairs/s ({})", rows[i].label, rate, how(*timing)));
         }
         if (rows[i].paper > 0)
@@ -240,7 +249,7 @@ Picture threads(const Json& part)
     for (const Json& point : over.at("random_vf").at("points"))
         x.ticks.emplace_back(point.at("threads").get<double>(), std::to_string(point.at("threads").get<int>()));
     Chart chart{"Threads",    "Pairs per second against the number of threads",
-                std::move(x), linear_axis("million pairs per second", extent.most),
+                std::move(x), linear_axis("million pairs per second", extent.most()),
                 320,          2};
     const auto add = [&](const char* key, Series series, const std::string& name) {
         std::vector<Point> points;
@@ -268,8 +277,8 @@ Picture against_pairs(const Json& part, const char* name, const char* title, con
     }
     Chart chart{title,
                 "Against the number of random vertex-face pairs",
-                log_axis("pairs", pairs.least, pairs.most),
-                log_axis(label, values.least, values.most),
+                log_axis("pairs", pairs.least(), pairs.most()),
+                log_axis(label, values.least(), values.most()),
                 320,
                 2};
     const auto add = [&](const char* key, Series series, const char* legend) {

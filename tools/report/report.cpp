@@ -1,5 +1,6 @@
 #include "report.hpp"
 
+#include <cerrno>
 #include <deque>
 #include <filesystem>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "../input_error.hpp"
 #include "../mapped_file.hpp"
@@ -33,6 +35,9 @@ public:
         made_ = fs::create_directories(path_, error);
         if (error) throw InputError(path_, "cannot be created: " + error.message());
         if (!fs::is_directory(path_)) throw InputError(path_, "is no folder");
+        // Hours of measuring shall not end at it.
+        if (::access(path_.c_str(), W_OK | X_OK) != 0)
+            throw InputError(path_, "cannot be written into: " + std::generic_category().message(errno));
     }
     ~OutputFolder()
     {
@@ -86,7 +91,7 @@ Json read_json(const fs::path& path)
 {
     const MappedFile file{path};
     Json json = Json::parse(file.bytes(), nullptr, false);
-    if (json.is_discarded() || !json.is_object() || json.value("format", 0) != 1) {
+    if (!json.is_object() || !json.contains("format") || json["format"] != 1) {
         throw InputError(path, "is no report.json of this version");
     }
     return json;
@@ -98,8 +103,12 @@ void write_report(const ReportOptions& options)
 {
     const OutputFolder folder{options.out};
     Json json;
+    const auto json_file = [&] {
+        return std::pair<std::string, std::string>{"report.json", json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"};
+    };
     if (options.draw.empty()) {
         on_threads(0, [&] { json = measure(options); });
+        folder.write({json_file()});  // whatever becomes of the drawing
     } else {
         json = read_json(options.draw);
     }
@@ -107,7 +116,7 @@ void write_report(const ReportOptions& options)
     try {
         const std::vector<Picture> pictures = draw_pictures(json);
         for (const Picture& picture : pictures) files.emplace_back(picture.name + ".svg", picture.svg);
-        files.emplace_back("report.json", json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+        files.push_back(json_file());
         files.emplace_back("report.html", html_page(json, pictures));
     } catch (const Json::exception& error) {
         if (options.draw.empty()) throw;

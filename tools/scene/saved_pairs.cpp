@@ -10,16 +10,12 @@
 #include "pair_vertices.hpp"
 
 namespace fastccd::tools {
-namespace {
-
 namespace fs = std::filesystem;
 
-bool is_name_of_pairs(const std::string& name)
+bool SavedPairs::is_name_of_pairs(const std::string& name)
 {
     return name.starts_with("step_") && (name.ends_with("_vf.npy") || name.ends_with("_ee.npy"));
 }
-
-}  // namespace
 
 SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{folder}, steps_{steps}
 {

@@ -25,6 +25,9 @@ public:
     SavedPairs(const std::filesystem::path& folder, std::size_t steps);
     ~SavedPairs();
 
+    /// Whether a file of this name may be one of pairs, of this scene or another.
+    [[nodiscard]] static bool is_name_of_pairs(const std::string& name);
+
     SavedPairs(const SavedPairs&) = delete;
     SavedPairs& operator=(const SavedPairs&) = delete;
 

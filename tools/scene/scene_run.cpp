@@ -118,11 +118,13 @@ private:
         double seconds_in_sink = 0;
         find_candidates(step, [&](std::span<const Pair> pairs) {
             const Clock::time_point sink_start = Clock::now();
-            // Where the mesh is dense a piece may be large, and Ctrl-C should not wait for it.
+            // Where the mesh is dense there may be many, and Ctrl-C should not wait for all of them.
             while (!pairs.empty()) {
-                const std::span<const Pair> piece = pairs.first(std::min(chunk_pairs, pairs.size()));
+                const std::span<const Pair> piece = pairs.first(std::min(piece_size_.pairs(), pairs.size()));
                 pairs = pairs.subspan(piece.size());
+                const double before = totals.narrow_seconds;
                 answer_piece(step_number, step, mesh, piece, totals);
+                piece_size_.took(piece.size(), totals.narrow_seconds - before);
                 progress_.move(kind_of(Pair{}), share_done(step, piece.back()));
             }
             seconds_in_sink += seconds_since(sink_start);
@@ -171,6 +173,7 @@ private:
     SceneHits* hits_;
     SavedPairs* saved_;
     StepProgress& progress_;
+    PieceSize piece_size_;
     std::vector<Contact> contacts_;  // of the current piece; kept to reuse its memory
 };
 

@@ -8,7 +8,7 @@
 // - Rounding needs no bounding box of the scene: `err` is not looked at. Work is bounded without `max_itr`, and the
 //   tolerance is always reached: output_tolerance is the tolerance.
 // - `no_zero_toi` needs no second search: a pair that is apart at t = 0, beyond rounding, has toi > 0 anyway. toi = 0 means
-//   contact at the start.
+//   contact at the start, to within rounding.
 // - With a minimum separation `ms`, toi = 0 means that the pair is within it at the start. One that is negative, a t_max outside [0, 1], a tolerance that is not positive, and
 //   coordinates that are not finite are std::invalid_argument.
 #pragma once
