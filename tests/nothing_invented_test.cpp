@@ -19,12 +19,13 @@
 //   for the longest side, with g_e <= g + l, that is at least 0.033 d^2.
 // - Else g >= 0.9 d: the corner found above is off the shortest vector's line by at least 0.28 d, and the partial areas
 //   outside add at least 0.22 d^2, at a side as at a corner.
-// So d^2 <= A / 0.033, d <= 138 sqrt(u) s.
+// So d^2 <= A / 0.033, d <= 138 sqrt(u) s. With t_max other than 1 rho is 10, and A <= 2784 u s^2: d <= 291 sqrt(u) s, and the bound
+// is 2^9 sqrt(u) s.
 //
 // Edge-edge. The area test says little: its excess may vanish for edges well apart. But at height h the cubic is
 // h |e1| |e2| sin(angle) <= 46 u m, m the sum of its terms' magnitudes, at most 6 |e1| s^2; and the projections
 // fail, so seen along some axis the edges still cross, h <= c |e| sin(angle) for both, up to O(u) s. The product of the
-// two is h^2 <= 276 c u s^2, c = 3 sqrt(3) at most: d <= 38 sqrt(u) s. Where they would cross outside an edge, axis gaps fail
+// two is h^2 <= 276 c u s^2, c = 3 sqrt(3) at most: d <= 38 sqrt(u) s (with rho = 10 and 100 u m: 56). Where they would cross outside an edge, axis gaps fail
 // only at an angle, and the edge functions give d^2 <= O(26 u s^2) in the same way.
 //
 // sqrt(u) is real: distances of sqrt(u) s are found below, for faces and angles as thin. Where the search reaches its cap
@@ -104,12 +105,13 @@ struct Worst {
     oracle::Pair pair{};
 };
 
-void measure_all(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, double tolerance, Worst& worst)
+void measure_all(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, double tolerance, Worst& worst, double t_max = 1.0)
 {
     Options options;
     options.tolerance = tolerance;
+    options.t_max = t_max;
     const Answer found = answer(kind, interleaved(pairs), options);
-    const SearchParameters parameters{tolerance, 1.0, false};
+    const SearchParameters parameters{tolerance, t_max, false};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (!(found.toi[i] <= 1.0)) continue;
         ++worst.reported;
@@ -164,6 +166,28 @@ TEST(NothingInvented, ThinPairs)
         }
         EXPECT_GT(largest, 0.1 * std::sqrt(u)) << "none of these pairs amplifies rounding: nothing was tested";
     }
+}
+
+/// Positions at t_max are rounded.
+TEST(NothingInvented, UpToAnEarlierTime)
+{
+    constexpr double t_max = 0.7;
+    std::vector<oracle::Pair> pairs;
+    std::size_t reported = 0;
+    for (const auto kind : kinds)
+        for (const double tolerance : {1e-3, 1e-9}) {
+            for (const std::string& family : families()) {
+                generate(family, kind, 73, 100, pairs);
+                Worst worst;
+                measure_all(kind, pairs, tolerance, worst, t_max);
+                expect_close(kind, family, tolerance, worst, well_shaped(family) ? well_shaped_bound : 2 * thin_bound);
+                reported += worst.reported;
+            }
+            Worst worst;
+            measure_all(kind, ThinPairs{kind, 74}.next(5000), tolerance, worst, t_max);
+            expect_close(kind, "thin pairs", tolerance, worst, 2 * thin_bound);
+        }
+    EXPECT_GT(reported, 2000u);
 }
 
 /// Two short edges that pass each other at some 1e-10 of the extents: on its way past, the search uses up all its
