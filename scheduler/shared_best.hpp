@@ -19,8 +19,9 @@ public:
     double cutoff(const Job& job, std::size_t first)
     {
         if (settled_before(first)) return -1.0;
-        // In the parameter s; rounding is far below the leaf that apart_until_cutoff adds.
-        return std::min(toi_.load(std::memory_order_relaxed) / job.parameters.t_max, 1.0);
+        // In the parameter s. Relative rounding is covered by time_limit; where times are subnormal, SearchParameters::time is
+        // off by up to 2^-1073 + 2^-1074.
+        return std::min((toi_.load(std::memory_order_relaxed) + 0x1p-1072) / job.parameters.t_max, 1.0);
     }
 
     void offer(const Contact& contact)

@@ -123,12 +123,28 @@ TEST(SharedBest, LeavesOutOnlyWhatCannotBeBetter)
     best.offer({5000, 0.25});
     EXPECT_EQ(best.cutoff(job, 6144), 0.5);
     best.offer({3000, 0.0});
-    EXPECT_EQ(best.cutoff(job, 2048), 0.0);
+    EXPECT_GE(best.cutoff(job, 2048), 0.0);
+    EXPECT_LE(best.cutoff(job, 2048), 0x1p-1070);
     EXPECT_LT(best.cutoff(job, 3072), 0.0);
     best.offer({1000, 0.0});
     best.offer({2000, 0.0});
     best.offer({10, 0.1});
     EXPECT_EQ(best.contact().pair, 1000u);
+}
+
+/// Where times are subnormal, many of the parameter s are the same double.
+TEST(SharedBest, LeavesInWhatIsAtTheSameTime)
+{
+    for (const double t_max : {1.0, 0.7, 1e-300, 1e-308, 1e-315, 1e-320, 3e-323}) {
+        const Job job{PairKind::vertex_face, {}, {1e-9, t_max, false}, nullptr, false};
+        for (double s = 0.001; s < 0.99; s *= 1.003) {
+            SharedBest best;
+            best.offer({.pair = 9, .toi = job.parameters.time(s)});
+            double same = s;
+            for (double later = s; later < 1.0 && job.parameters.time(later) == best.contact().toi; later += 1e-4) same = later;
+            EXPECT_GE(time_limit(best.cutoff(job, 0)), same) << t_max << ' ' << s;
+        }
+    }
 }
 
 TEST(CollisionFreeStep, AnInvalidPairAllowsNone)

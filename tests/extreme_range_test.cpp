@@ -2,6 +2,7 @@
 // the step 2^2000 apart in scale; and, at the other end of what may be asked, tolerances as wide as the step.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -102,19 +103,44 @@ TEST(ExtremeRange, ShortStepFromOnePlace)
         }
 }
 
-/// Dropped on a face, in steps whose times are subnormal: a product with t_max is rounded to a multiple of the least double.
+/// A vertex that drops on a face from `lowest` to 1.2 in units of t_max, at speed 1.
+std::vector<oracle::Pair> drops(Random& random, double t_max, std::size_t count, double lowest = 0.0)
+{
+    std::vector<oracle::Pair> pairs(count);
+    for (oracle::Pair& pair : pairs) {
+        const double height = std::uniform_real_distribution<double>{lowest, 1.2}(random);
+        pair = {{{0.2, 0.2, height * t_max}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+        for (std::size_t point = 0; point < 4; ++point) pair[4 + point] = pair[point];
+        pair[4][2] -= 1.0;
+    }
+    return pairs;
+}
+
+/// In steps whose times are subnormal a product with t_max is rounded to a multiple of the least double.
 TEST(ExtremeRange, SubnormalTimes)
 {
     Random random{403};
-    for (const double t_max : {1e-300, 1e-307, 1e-309, 1e-315, 1e-320, 3e-323}) {
-        std::vector<oracle::Pair> pairs(1500);
-        for (oracle::Pair& pair : pairs) {
-            pair = {{{0.2, 0.2, 0.6 * t_max * (1 + symmetric(random))}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-            for (std::size_t point = 0; point < 4; ++point) pair[4 + point] = pair[point];
-            pair[4][2] -= 1.0;
-        }
+    for (const double t_max : {1e-300, 1e-307, 1e-309, 1e-315, 1e-320, 3e-323})
         for (const double tolerance : {1e-9, least})
-            EXPECT_GT(expect_bounded(oracle::Kind::vertex_face, pairs, over(t_max, tolerance)), 500u) << t_max;
+            EXPECT_GT(expect_bounded(oracle::Kind::vertex_face, drops(random, t_max, 1500), over(t_max, tolerance)), 500u) << t_max;
+}
+
+/// Times that differ within the step are then often the same double, and the first of all is the pair that comes first.
+TEST(ExtremeRange, EarliestOfEqualSubnormalTimes)
+{
+    Random random{406};
+    for (const double t_max : {1e-309, 1e-321, 3e-323}) {
+        const auto pairs = drops(random, t_max, 20'000, 0.3);
+        Options options = over(t_max);
+        const Answer dense = answer_without_roots(oracle::Kind::vertex_face, interleaved(pairs), options);
+        const auto first = std::min_element(dense.toi.begin(), dense.toi.end());
+        for (const Isa isa : isas_to_test()) {
+            options.isa = isa;
+            Contact earliest{};
+            ASSERT_TRUE(earliest_contact(PairKind::vertex_face, interleaved(pairs), options, earliest).ok());
+            EXPECT_EQ(earliest.toi, *first) << t_max;
+            EXPECT_EQ(earliest.pair, static_cast<std::size_t>(first - dense.toi.begin())) << t_max << ' ' << fastccd::name(isa);
+        }
     }
 }
 

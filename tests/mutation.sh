@@ -157,6 +157,7 @@ mutant 'range: gaps along subnormal axes without a floor' kernels/certificates.h
 mutant 'range: short steps scaled as if they were whole' scalar/scaling.cpp 's/within_range\(step\) && within_range\(searched\)/within_range(step)/' extreme_range_test
 mutant 'range: both ends halved' scalar/scaling.cpp 's/coordinate > 0x1p1021 \? 4 : 0/4/' extreme_range_test
 mutant 'range: subnormal times rounded up' kernels/search_parameters.hpp 's/product - 0x1p-1073 : 0\.0/product : 0.0/' extreme_range_test
+mutant 'range: ties of subnormal times left out' scheduler/shared_best.hpp 's/memory_order_relaxed\) \+ 0x1p-1072/memory_order_relaxed)/' collision_free_step_test
 mutant 'range: roots as coarse as times' scalar/contact_roots.hpp 's/widest_leaf = 0x1p-30/widest_leaf = 1/' extreme_range_test
 
 # ---- Area inclusion loosened
