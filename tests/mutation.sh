@@ -111,7 +111,7 @@ mutant 'one of several values not compared' $certificates 's/return min\(min\(a,
 mutant 'lanes: NaN in range' $certificates 's/less_equal\(sum, sum\) & //' api_test
 mutant 'quadratic certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test
 mutant 'sum of edge functions by sign alone' $certificates 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test truth_test stress
-mutant 'linear certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.linear\) \* extent/broadcast<L>(0.0) * extent/' certificates_test truth_test stress
+mutant 'linear certificate by sign alone' $certificates 's/broadcast<L>\(bounds\.linear\) \* max/broadcast<L>(0.0) * max/' certificates_test truth_test stress
 mutant 'linear certificate at one end' $certificates 's/less\(bound, min\(start\.above, end\.above\)\)/less(bound, max(start.above, end.above))/' certificates_test
 mutant 'touching counts as apart' $certificates 's/less\(bound, min\(start\.above, end\.above\)\)/(!less(min(start.above, end.above), bound))/' certificates_test
 mutant 'outside one side is outside (vertex-face)' $certificates 's/(max\(smallest\(p\), smallest\(q\), smallest\(t\)\)\)) &/$1 |/' certificates_test
@@ -132,7 +132,7 @@ quarters=kernels/part_certificates.hpp
 mutant 'apart on one quarter is apart on its half' $quarters 's/first & on_next/first | on_next/' certificates_test same_bits_test
 mutant 'quarters: of one half' simd/root_stages.hpp 's/~Lane<L>::bits\(first & second\)/~Lane<L>::bits(first | second)/' same_bits_test
 mutant 'quarters of wide leaves' simd/root_stages.hpp 's/parameters\.leaf_width > 0\.25/parameters.leaf_width > 2/' certificates_test
-mutant 'gaps on a part by sign alone' $quarters 's/broadcast<L>\(bounds\.linear\) \* extent/broadcast<L>(0.0) * extent/' certificates_test
+mutant 'gaps on a part by sign alone' $quarters 's/gap_bound\(bounds, extent\)/broadcast<L>(0.0)/' certificates_test
 
 # ---- The certified search loosened
 search=scalar/pair_polynomials.hpp intervals=kernels/interval_certificates.hpp
@@ -150,7 +150,7 @@ mutant 'several: the way taken whatever the answers' scalar/ordered_search.hpp '
 mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel\.lanes <= limit/intervals <= limit/' ordered_search_test
 mutant 'several: what lies beside the way forgotten' scalar/ordered_search.hpp 's/stack\.push\(beside\[k\]\)/static_cast<void>(beside[k])/' ordered_search_test
 mutant 'several: narrow intervals halved' scalar/ordered_search.hpp 's/if \(narrowest\(way\)\) return way;//' ordered_search_test
-mutant 'time not rounded down' kernels/search_parameters.hpp 's/\(s \* t_max\) \* \(1\.0 - 0x1p-52\)/s * t_max/' error_bounds_test
+mutant 'time not rounded down' kernels/search_parameters.hpp 's/product \* \(1\.0 - 0x1p-52\)/product/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
 mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
 mutant 'range: gaps along subnormal axes without a floor' kernels/certificates.hpp 's/max\(extent, broadcast<L>\(length_floor\)\)/extent/' extreme_range_test
