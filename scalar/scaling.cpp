@@ -81,7 +81,7 @@ RelativeMotion<double> scaled_relative_motion(const double* coordinates, double 
     for (int axis = 0; axis < 3; ++axis) {
         const AxisDifferences differences{exchanged, axis};
         double start[3] = {}, end[3] = {};
-        if (!differences.zero()) {
+        if (!differences.zero()) {  // left alone if within_range, scaled to near 1 if not
             const int exponent = differences.exponent(t_max);
             differences.put(start, end, t_max, exponent >= -100 && exponent < 100 ? 0 : -exponent);
         }

@@ -30,7 +30,8 @@ public:
     [[nodiscard]] int exponent(double t_max) const;
 
     /// Components of the motion over [0, t_max], multiplied by 2^power, by the formula of relative_motion(); t_max q is
-    /// formed without underflow. `power` within 1000 of -exponent(t_max). What underflows errs by some 2^-1074.
+    /// formed without underflow. `power` at most 1000 above -exponent(t_max), so that nothing overflows; what underflows errs by
+    /// some 2^-1074.
     void put(double (&start)[3], double (&end)[3], double t_max, int power) const;
 
 private:
