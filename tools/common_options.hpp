@@ -56,7 +56,7 @@ void add_pair_options(CLI::App& command, PairOptions& options);
 /// Throws CLI::ValidationError if the hits would take the place of one of `inputs`.
 void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs);
 
-/// Throws CLI::ValidationError if the hits would take the place of `output`, another file that is written, or it theirs.
+/// Throws CLI::ValidationError if the hits and `output`, another file that is written, are the same ordinary file.
 void refuse_overwriting_output(const CommonOptions& options, const std::filesystem::path& output);
 
 /// Refuses the empty string, as of a variable of the shell that is not set.
