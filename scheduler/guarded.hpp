@@ -1,7 +1,9 @@
-// Nothing is thrown across the public interface.
+// What surrounds every call of the public interface: nothing is thrown across it, and arithmetic is what the bounds assume.
 #pragma once
 
 #include <fastccd/options.hpp>
+
+#include <default_floating_point.hpp>
 
 namespace fastccd {
 
@@ -10,6 +12,7 @@ namespace fastccd {
 template <class Call>
 Status guarded(const Call& call) noexcept
 {
+    const DefaultFloatingPoint defaults;
     try {
         return call();
     } catch (...) {

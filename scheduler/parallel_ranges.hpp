@@ -16,6 +16,12 @@ using Range = tbb::blocked_range<std::size_t>;
 /// threads as never before are started here for a moment first. False: keep to the caller's thread.
 bool workers_available() noexcept;
 
+/// Cancelling the caller's task group must not leave anything undone, and all threads are to have the floating-point environment of this
+/// one (default_floating_point.hpp), not the one in which the arena was made.
+struct OwnContext : tbb::task_group_context {
+    OwnContext() : task_group_context{isolated, fp_settings} {}
+};
+
 /// body(range) for parts of [0, size) that are together all of it; a part of at most `grain` is not divided.
 template <class Body>
 void for_each_range(std::size_t size, std::size_t grain, const Body& body)
@@ -25,8 +31,7 @@ void for_each_range(std::size_t size, std::size_t grain, const Body& body)
         body(Range{0, size});
         return;
     }
-    // A context of its own: cancelling the caller's task group must not leave anything undone.
-    tbb::task_group_context context{tbb::task_group_context::isolated};
+    OwnContext context;
     tbb::parallel_for(Range{0, size, grain}, body, context);
 }
 
@@ -36,7 +41,7 @@ Value reduce_ranges(std::size_t size, std::size_t grain, const Value& identity, 
 {
     if (size == 0) return identity;
     if (size <= grain || !workers_available()) return body(Range{0, size}, identity);
-    tbb::task_group_context context{tbb::task_group_context::isolated};
+    OwnContext context;
     return tbb::parallel_reduce(Range{0, size, grain}, identity, body, join, context);
 }
 

@@ -218,6 +218,11 @@ mutant 'totals: first contact of the search not seen' $tile 's/earliest = std::m
 mutant 'totals: invalid pairs are contacts' $tile 's/reported - invalid/reported/' api_test
 mutant 'totals: invalid pairs are proven' $tile 's/proven - invalid/proven/' api_test
 
+# ---- The caller's floating-point environment
+mutant 'environment: as the caller left it' scheduler/guarded.hpp 's/const DefaultFloatingPoint defaults;//' floating_point_environment_test
+mutant 'environment: threads as the arena left it' scheduler/parallel_ranges.hpp 's/isolated, fp_settings/isolated, default_traits/' floating_point_environment_test
+mutant 'environment: not given back' scheduler/default_floating_point.cpp 's/_mm_setcsr\(before_\);/;/' floating_point_environment_test
+
 # ---- Boxes of indexed pairs
 boxes=scheduler/mesh_boxes.cpp
 mutant 'boxes: highest is the lower line' $boxes 's/-1 - (start|end)/-$1/g' boxes_test

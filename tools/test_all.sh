@@ -62,13 +62,14 @@ test_other_machines() {
 
   build=$arm64 configure_and_build "-DCMAKE_TOOLCHAIN_FILE=$root/tools/arm64.cmake" -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON \
     -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- fastccd_digest api_test boxes_test c_interface_test \
-    separation_bits_test
+    floating_point_environment_test separation_bits_test
   say "emulated arm64"
   qemu-aarch64-static "$arm64/tests/fastccd_digest" $pairs | cmp - "$here"
   qemu-aarch64-static "$arm64/tests/api_test" --gtest_brief=1
   qemu-aarch64-static "$arm64/tests/boxes_test" --gtest_brief=1
   qemu-aarch64-static "$arm64/tests/separation_bits_test" --gtest_brief=1 --gtest_filter='SeparationBits.IsasOnMadePairs'
   qemu-aarch64-static "$arm64/tests/c_interface_test"
+  qemu-aarch64-static "$arm64/tests/floating_point_environment_test" --gtest_brief=1
   "$root/tests/exported_symbols_test.sh" "$arm64/libfastccd.so" "$root/tests/exported_symbols.txt"
 }
 

@@ -9,7 +9,8 @@
 //
 // All functions may be called from any number of threads at once, keep no state, run in the caller's oneTBB arena,
 // throw nothing and print nothing: what goes wrong is in the Status. Times are in units of the step, coordinates in
-// any unit. Spans and views must stay valid and unchanged during the call.
+// any unit. Spans and views must stay valid and unchanged during the call. The caller's floating-point environment (direction
+// of rounding, subnormal numbers flushed, exceptions trapped) changes no answer, and is the same after the call.
 #pragma once
 
 #include <cstddef>

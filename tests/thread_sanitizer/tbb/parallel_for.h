@@ -9,10 +9,11 @@
 
 namespace tbb {
 
-/// Nothing is cancelled here.
+/// Nothing is cancelled here, and all threads have the same floating-point environment.
 struct task_group_context {
     enum kind_type { isolated };
-    explicit task_group_context(kind_type) {}
+    enum traits_type { fp_settings };
+    task_group_context(kind_type, traits_type) {}
 };
 
 /// Chunks of one grain, dealt to the workers in turn: neighbours run on different threads, and every thread gets its share, which

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
 
@@ -12,6 +14,12 @@
 namespace fastccd::adapters {
 
 using Vector = Eigen::Ref<const Eigen::Vector3d>;
+
+// By their bits, because this is compiled with the options of whoever includes it: with -ffast-math, compilers take it for granted that
+// there are no infinities and no NaN, and std::isfinite(+infinity), which is the answer for a pair that is apart, is true.
+
+inline bool is_nan(double x) { return std::bit_cast<std::uint64_t>(x) << 1 > std::uint64_t{0x7ff} << 53; }
+inline bool is_finite(double x) { return std::bit_cast<std::uint64_t>(x) << 1 < std::uint64_t{0x7ff} << 53; }
 
 /// Four points of a pair at both ends of the step.
 struct MovingPair {
@@ -50,10 +58,10 @@ private:
 /// distance that is not positive, and coordinates that are not finite.
 inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
 {
-    if (!(minimum_separation >= 0.0) || std::isinf(minimum_separation))
+    if (!is_finite(minimum_separation) || minimum_separation < 0.0)
         throw std::invalid_argument("fastccd: the minimum separation must be finite and at least 0");
-    if (!(t_max >= 0.0 && t_max <= 1.0)) throw std::invalid_argument("fastccd: t_max must be in [0, 1]");
-    if (!(distance > 0.0)) throw std::invalid_argument("fastccd: the tolerance must be positive");
+    if (is_nan(t_max) || t_max < 0.0 || t_max > 1.0) throw std::invalid_argument("fastccd: t_max must be in [0, 1]");
+    if (is_nan(distance) || distance <= 0.0) throw std::invalid_argument("fastccd: the tolerance must be positive");
     Options options;
     options.minimum_separation = minimum_separation;
     const double displacement = pair.largest_displacement(kind);
@@ -63,9 +71,9 @@ inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separa
     if (t_max > 0.0) options.t_max = t_max;
     const Point(&x1)[4] = t_max > 0.0 ? pair.x1 : pair.x0;
     const PairToi found = kind == PairKind::vertex_face ? vertex_face_toi(pair.x0, x1, options) : edge_edge_toi(pair.x0, x1, options);
-    if (std::isnan(found.toi)) throw std::invalid_argument("fastccd: coordinates must be finite");
+    if (is_nan(found.toi)) throw std::invalid_argument("fastccd: coordinates must be finite");
     toi = found.toi;
-    return std::isfinite(toi);
+    return is_finite(toi);
 }
 
 }  // namespace fastccd::adapters

@@ -1,0 +1,27 @@
+// The floating-point environment that all error bounds assume.
+#pragma once
+
+#include <cfenv>
+
+namespace fastccd {
+
+/// While it lives, this thread rounds to nearest, keeps subnormal numbers, and does not trap; afterwards it does again what it did
+/// before. A caller may do otherwise without knowing: a program, or a library that it loads, that was linked with -ffast-math
+/// flushes subnormal numbers to zero; interval arithmetic rounds upwards; some trap divisions by zero, of which lanes do many for
+/// nothing. Threads of oneTBB take it over from the one that calls (parallel_ranges.hpp).
+class DefaultFloatingPoint {
+public:
+    DefaultFloatingPoint() noexcept;
+    ~DefaultFloatingPoint();
+    DefaultFloatingPoint(const DefaultFloatingPoint&) = delete;
+    DefaultFloatingPoint& operator=(const DefaultFloatingPoint&) = delete;
+
+private:
+#ifdef __SSE2__
+    unsigned before_;  ///< MXCSR. Nothing here uses the x87 registers, whose environment takes much longer to save.
+#else
+    std::fenv_t before_;
+#endif
+};
+
+}  // namespace fastccd

@@ -1,0 +1,256 @@
+// The same bits whatever the caller's floating-point environment is, and that environment is the caller's again afterwards.
+#include <cfenv>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+#include "amount.hpp"
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+struct Environment {
+    const char* name;
+    void (*set)();
+};
+
+void flush_subnormals()
+{
+#if defined(__SSE2__)
+    _mm_setcsr(_mm_getcsr() | 0x8040);  // flush to zero, denormals are zero
+#elif defined(__aarch64__)
+    std::fenv_t environment;
+    std::fegetenv(&environment);
+    environment.__fpcr |= 1u << 24;  // FZ
+    std::fesetenv(&environment);
+#else
+#error "how does this processor flush subnormal numbers?"
+#endif
+}
+
+void trap_exceptions()
+{
+    std::feclearexcept(FE_ALL_EXCEPT);
+    feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW | FE_UNDERFLOW);  // without effect where the processor cannot
+}
+
+constexpr Environment environments[] = {
+    {"upward", [] { std::fesetround(FE_UPWARD); }},
+    {"downward", [] { std::fesetround(FE_DOWNWARD); }},
+    {"toward zero", [] { std::fesetround(FE_TOWARDZERO); }},
+    {"subnormal numbers flushed", flush_subnormals},
+    {"exceptions trapped", trap_exceptions},
+};
+
+/// What decides how numbers are computed, without the exceptions there were.
+unsigned controls()
+{
+#if defined(__SSE2__)
+    return _mm_getcsr() & ~0x3fu;
+#else
+    std::fenv_t environment;
+    std::fegetenv(&environment);
+    return environment.__fpcr;
+#endif
+}
+
+/// Is in an environment while it lives.
+class Inside {
+public:
+    explicit Inside(const Environment& environment)
+    {
+        std::fegetenv(&before_);
+        environment.set();
+    }
+    ~Inside() { std::fesetenv(&before_); }
+    Inside(const Inside&) = delete;
+    Inside& operator=(const Inside&) = delete;
+
+private:
+    std::fenv_t before_;
+};
+
+/// All that the library says, as bytes, to compare.
+class Record {
+public:
+    template <class T>
+    void add(const T& value)
+    {
+        static_assert(std::is_arithmetic_v<T>);
+        const auto* const first = reinterpret_cast<const unsigned char*>(&value);
+        bytes_.insert(bytes_.end(), first, first + sizeof value);
+    }
+    template <class T>
+    void add(const std::vector<T>& values)
+    {
+        for (const T& value : values) add(value);
+    }
+    void add(const Contact& contact)
+    {
+        add(contact.pair);
+        add(contact.toi);
+        add(contact.proven);
+        add(contact.at_start);
+    }
+    void add(const Status& status) { add(static_cast<int>(status.error)); }
+
+    friend bool operator==(const Record&, const Record&) = default;
+
+private:
+    std::vector<unsigned char> bytes_;
+};
+
+/// Pairs of every family, and a mesh made of them.
+struct Scene {
+    oracle::Kind kind;
+    std::vector<oracle::Pair> pairs;
+    std::vector<float> rounded;
+    std::vector<double> start, end;  // n x 3
+    std::vector<std::int32_t> faces, edges;
+    std::vector<VertexFace> vertex_face;
+    std::vector<EdgeEdge> edge_edge;
+
+    explicit Scene(oracle::Kind kind_of_pairs) : kind{kind_of_pairs}
+    {
+        std::vector<oracle::Pair> more;
+        for (const std::string& family : families()) {
+            generate(family, kind, 71, amount(40), more);
+            pairs.insert(pairs.end(), more.begin(), more.end());
+        }
+        // Subnormal numbers, which only the first and last of the environments that round otherwise leave alone.
+        for (oracle::Pair pair : more) {
+            for (auto& point : pair)
+                for (double& x : point) x *= 0x1p-1060;
+            pairs.push_back(pair);
+        }
+        for (const oracle::Pair& pair : pairs) {
+            const auto first = static_cast<std::int32_t>(start.size() / 3), number = static_cast<std::int32_t>(faces.size() / 3);
+            for (std::size_t p = 0; p < 4; ++p) {
+                start.insert(start.end(), pair[p].begin(), pair[p].end());
+                end.insert(end.end(), pair[4 + p].begin(), pair[4 + p].end());
+            }
+            for (const auto& point : pair)
+                for (const double x : point) rounded.push_back(static_cast<float>(x));
+            vertex_face.push_back({first, number});
+            edge_edge.push_back({2 * number, 2 * number + 1});
+            faces.insert(faces.end(), {first + 1, first + 2, first + 3});
+            edges.insert(edges.end(), {first, first + 1, first + 2, first + 3});
+        }
+    }
+};
+
+void add_packed(Record& record, const PairView& pairs, oracle::Kind kind, const Options& options)
+{
+    const Answer all = answer(kind, pairs, options);
+    record.add(all.toi);
+    record.add(all.roots);
+    record.add(all.summary.proven);
+    std::vector<Contact> contacts;
+    record.add(find_contacts(pair_kind(kind), pairs, options, contacts));
+    for (const Contact& contact : contacts) record.add(contact);
+    Contact earliest;
+    record.add(earliest_contact(pair_kind(kind), pairs, options, earliest));
+    record.add(earliest);
+}
+
+template <class Pair>
+void add_indexed(Record& record, const MovingMesh& mesh, std::span<const Pair> pairs, const Options& options)
+{
+    std::vector<double> toi(pairs.size());
+    record.add(time_of_impact(mesh, pairs, options, toi));
+    record.add(toi);
+    Contact earliest;
+    record.add(earliest_contact(mesh, pairs, options, earliest));
+    record.add(earliest);
+}
+
+Record all_answers(const Scene& scene)
+{
+    Record record;
+    const PairView rounded = PairView::interleaved(scene.rounded.data(), scene.pairs.size());
+    const std::vector<oracle::Pair> few(scene.pairs.end() - 100, scene.pairs.end());  // on the caller's thread
+    for (const Isa isa : isas_to_test())
+        for (const double t_max : {1.0, 0.7})
+            for (const double separation : {0.0, 0.01}) {
+                Options options;
+                options.isa = isa;
+                options.t_max = t_max;
+                options.minimum_separation = separation;
+                add_packed(record, interleaved(scene.pairs), scene.kind, options);
+                add_packed(record, rounded, scene.kind, options);
+                add_packed(record, interleaved(few), scene.kind, options);
+            }
+
+    const std::size_t vertices = scene.start.size() / 3, faces = scene.faces.size() / 3;
+    const MovingMesh mesh{PositionView::rows(scene.start.data(), vertices), PositionView::rows(scene.end.data(), vertices),
+                          IndexView::rows(scene.faces.data(), faces, 3), IndexView::rows(scene.edges.data(), 2 * faces, 2)};
+    const std::span<const VertexFace> vertex_face{scene.vertex_face};
+    const std::span<const EdgeEdge> edge_edge{scene.edge_edge};
+    add_indexed(record, mesh, vertex_face, {});
+    add_indexed(record, mesh, edge_edge, {});
+    CollisionFreeStep step;
+    record.add(collision_free_step(mesh, vertex_face.last(60), edge_edge.last(60), {}, step));
+    record.add(step.step);
+
+    for (const oracle::Pair& pair : few) {
+        Point x0[4], x1[4];
+        for (std::size_t p = 0; p < 4; ++p) x0[p] = pair[p], x1[p] = pair[4 + p];
+        const PairToi found = scene.kind == oracle::Kind::vertex_face ? vertex_face_toi(x0, x1) : edge_edge_toi(x0, x1);
+        record.add(found.toi);
+        record.add(found.proven);
+    }
+    return record;
+}
+
+constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
+
+TEST(FloatingPointEnvironment, SameBitsInAnyAndItStays)
+{
+    for (const auto kind : kinds) {
+        const Scene scene{kind};
+        const Record expected = all_answers(scene);
+        for (const Environment& environment : environments) {
+            bool same = false, stays = false;
+            {
+                const Inside inside{environment};
+                const unsigned before = controls();
+                same = all_answers(scene) == expected;
+                stays = controls() == before;
+            }
+            EXPECT_TRUE(same) << kind_name(kind) << ", " << environment.name;
+            EXPECT_TRUE(stays) << kind_name(kind) << ", " << environment.name;
+        }
+    }
+}
+
+/// Threads of oneTBB take over the environment in which their arena was made.
+TEST(FloatingPointEnvironment, OfTheArenaDoesNotMatter)
+{
+    const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, 3};
+    for (const auto kind : kinds) {
+        const Scene scene{kind};
+        const Record expected = all_answers(scene);
+        for (const Environment& environment : environments) {
+            tbb::task_arena arena{3};
+            {
+                const Inside inside{environment};
+                arena.initialize();
+            }
+            bool same = false;
+            arena.execute([&] { same = all_answers(scene) == expected; });
+            EXPECT_TRUE(same) << kind_name(kind) << ", " << environment.name;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace fastccd::testing
