@@ -42,6 +42,7 @@ public:
     /// `f`, without multiple roots, has exactly one root inside the part and none at its ends.
     static AlgebraicTime inside(BinaryForm f, DyadicPart part) { return AlgebraicTime{std::move(f), std::move(part)}; }
 
+    [[nodiscard]] bool is_start() const { return !form && where.index == 0; }
     /// Sign of q there.
     [[nodiscard]] int sign(const BinaryForm& q);
     /// Largest k with k / 2^depth <= this time.

@@ -131,12 +131,19 @@ ExactContact exact_contact(PairKind kind, const double* coordinates, const Searc
 {
     const std::vector<MovingTriangle> triangles = difference_triangles(kind, integer_motion(coordinates, parameters.t_max));
     const auto depth = static_cast<unsigned>(std::ilogb(parameters.leaf_count));
-    std::optional<mpz_class> first_leaf;
+    std::optional<double> earliest;
+    const auto lower_bound = [&](AlgebraicTime& time) {
+        const mpz_class leaf = time.floor_times_two_to(depth);
+        if (leaf != 0 || time.is_start()) return leaf.get_d() * parameters.leaf_width;
+        for (unsigned finer = depth + 1; finer <= 1074; ++finer)
+            if (time.floor_times_two_to(finer) != 0) return std::ldexp(1.0, -static_cast<int>(finer));
+        return 0.0;
+    };
     const auto test = [&](AlgebraicTime& time) {
         const bool contact = std::ranges::any_of(triangles, [&](const auto& triangle) { return triangle.holds_origin(time); });
         if (!contact) return false;
-        const mpz_class leaf = time.floor_times_two_to(depth);
-        if (!first_leaf || leaf < *first_leaf) first_leaf = leaf;
+        const double bound = lower_bound(time);
+        if (!earliest || bound < *earliest) earliest = bound;
         return true;
     };
 
@@ -152,8 +159,7 @@ ExactContact exact_contact(PairKind kind, const double* coordinates, const Searc
                     if (test(time)) break;
             });
     }
-    if (!first_leaf) return {false, 0.0};
-    return {true, first_leaf->get_d() * parameters.leaf_width};
+    return {earliest.has_value(), earliest.value_or(0.0)};
 }
 
 }  // namespace fastccd::scalar

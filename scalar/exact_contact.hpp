@@ -12,7 +12,9 @@ bool exact_contact_available() noexcept;
 
 struct ExactContact {
     bool contact;
-    double leaf_start;  ///< Parameter s: left end of the leaf that holds the first time of contact; 1 if that is at s = 1.
+    /// Parameter s, not after the first time of contact: the left end of the leaf that holds it (1 if it is 1), and in the first
+    /// leaf, for a pair that is apart at the start, the largest power of two that is (0 below 2^-1074).
+    double lower_bound;
 };
 
 /// `coordinates`: 24 finite ones, in the order of PairView. Tens of microseconds. May throw std::bad_alloc.

@@ -52,7 +52,7 @@ void settle(const Job& job, const double* coordinates, scalar::SearchResult& fou
 {
     const scalar::ExactContact exact = scalar::exact_contact(job.kind, coordinates, job.parameters);
     if (exact.contact) {
-        found.toi = std::max(found.toi, job.parameters.time(exact.leaf_start));
+        found.toi = std::max(found.toi, job.parameters.time(exact.lower_bound));
         found.proof = scalar::Proof::leaf;
     } else {
         found = {std::numeric_limits<double>::infinity(), scalar::Proof::none, 0, found.intervals};
@@ -129,7 +129,8 @@ scalar::SearchResult answer_pair(const Job& job, const double* coordinates, doub
         return scalar::separation_search(job.kind, coordinates, job.parameters, time_limit(cutoff));
     const IntervalKernel* const lanes = job.kernels == nullptr ? nullptr : &job.kernels->intervals;
     scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters, lanes);
-    if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
+    const bool settled = found.proof == scalar::Proof::leaf && found.toi > 0.0;  // 0: apart at the start, or not, to within rounding
+    if (job.exact && std::isfinite(found.toi) && !settled) settle(job, coordinates, found);
     return found;
 }
 

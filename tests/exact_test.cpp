@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
@@ -12,13 +13,6 @@ namespace fastccd::testing {
 namespace {
 
 constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
-
-/// Rational arithmetic under sanitizers is slow.
-#ifdef FASTCCD_FEWER_EXACT_PAIRS
-constexpr std::size_t fewer = 10;
-#else
-constexpr std::size_t fewer = 1;
-#endif
 
 struct Found {
     std::vector<Contact> contacts;
@@ -35,10 +29,11 @@ Found find(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Opti
 
 TEST(Exact, VerdictIsTheOracles)
 {
+    std::size_t at_start = 0;
     for (const auto kind : kinds)
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
-            generate(family, kind, 51, 150 / fewer, pairs);
+            generate(family, kind, 51, amount(150), pairs);
             for (const double t_max : {1.0, 0.7, 1e-3})
                 for (const double tolerance : {1e-3, 1e-9, 1e-15}) {
                     if (t_max != 1.0 && tolerance != 1e-9) continue;
@@ -57,10 +52,13 @@ TEST(Exact, VerdictIsTheOracles)
                         EXPECT_TRUE(contact->proven);
                         EXPECT_GE(contact->toi, verdict.t_lo - std::max(tolerance, 0x1p-49)) << "early: " << family << ' ' << lossless(pairs[i]);
                         EXPECT_LE(contact->toi, verdict.t_hi) << "late: " << family << ' ' << lossless(pairs[i]);
+                        EXPECT_EQ(contact->toi > 0.0, !verdict.at_start) << family << ' ' << lossless(pairs[i]);
+                        at_start += verdict.at_start;
                         ++contact;
                     }
                 }
         }
+    EXPECT_GT(at_start, amount(1000));
 }
 
 TEST(Exact, ProvenIsNeverWrong)
@@ -69,7 +67,7 @@ TEST(Exact, ProvenIsNeverWrong)
     for (const auto kind : kinds)
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
-            generate(family, kind, 52, 300 / fewer, pairs);
+            generate(family, kind, 52, amount(300), pairs);
             for (const double tolerance : {0.3, 1e-6, 1e-12}) {
                 Options options;
                 options.tolerance = tolerance;
@@ -107,7 +105,7 @@ TEST(Exact, EarliestIsTheMinimumOfTheDenseAnswer)
     for (const auto kind : kinds)
         for (const char* family : {"boundary", "degenerate", "near_boundary", "coplanar_map", "uniform"}) {
             std::vector<oracle::Pair> pairs;
-            generate(family, kind, 54, 500 / fewer, pairs);
+            generate(family, kind, 54, amount(500), pairs);
             Options options;
             options.exact = true;
             const Answer dense = answer(kind, interleaved(pairs), options);
@@ -129,7 +127,7 @@ TEST(Exact, SmallIntegers)
     };
     for (const auto kind : kinds)
         for (const int range : {1, 2, 3}) {
-            std::vector<oracle::Pair> pairs(4000 / fewer);
+            std::vector<oracle::Pair> pairs(amount(4000));
             for (auto& pair : pairs)
                 for (auto& point : pair)
                     for (double& x : point) x = small(range);
