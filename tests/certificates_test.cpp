@@ -11,6 +11,7 @@
 #include <leaf_search.hpp>
 #include <pipeline.hpp>
 
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
@@ -98,7 +99,7 @@ TEST(Certificates, NoneIsGivenAroundAContact)
     for (const auto kind : kinds)
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
-            generate(family, kind, 62, 150, pairs);
+            generate(family, kind, 62, amount(150), pairs);
             for (const oracle::Pair& pair : pairs)
                 for (const double t_max : {1.0, 0.75, 1.0 / 3.0}) {
                     const oracle::Verdict verdict = oracle::exact_ccd(kind, pair, t_max);
@@ -120,7 +121,7 @@ TEST(Certificates, NoneIsGivenAroundAContact)
                     }
                 }
         }
-    EXPECT_GT(tried, 50000u);
+    EXPECT_GT(tried, amount(50000));
 }
 
 /// A leaf in which contact counts as proven is not searched further.
@@ -131,7 +132,7 @@ void expect_no_false_proof(std::size_t& misses)
     const SearchParameters parameters{1e-9, 1.0, false};
     for (const char* family : {"grazing", "grazing_exact", "f32_grazing", "near_interior"}) {
         std::vector<oracle::Pair> pairs;
-        generate(family, exact_kind, 66, 4000, pairs);
+        generate(family, exact_kind, 66, amount(4000), pairs);
         Options options;
         options.reference = true;
         const Answer found = answer(exact_kind, interleaved(pairs), options);
@@ -152,7 +153,7 @@ TEST(Certificates, ContactIsNotProvenWhereThereIsNone)
     std::size_t misses = 0;
     expect_no_false_proof<PairKind::vertex_face>(misses);
     expect_no_false_proof<PairKind::edge_edge>(misses);
-    EXPECT_GT(misses, 50u) << "no near miss was reported: nothing was tested";
+    EXPECT_GT(misses, amount(50)) << "no near miss was reported: nothing was tested";
     std::printf("%zu near misses that rounding cannot tell from contact\n", misses);
 }
 
@@ -163,7 +164,7 @@ TEST(Certificates, ContactIsNotProvenByRounding)
     std::mt19937_64 bits{91};
     const SearchParameters parameters{0.5, 1.0, false};
     std::size_t computed_signs_differ = 0;
-    for (int tries = 0; tries < 200000; ++tries) {
+    for (std::size_t tries = 0; tries < amount(200000); ++tries) {
         oracle::Pair pair{};
         const double slope_x = uniform(bits) - 0.5, slope_y = uniform(bits) - 0.5;
         const auto set = [&](std::size_t row, double x, double y) { pair[row] = {x, y, slope_x * x + slope_y * y}; };
@@ -183,7 +184,7 @@ TEST(Certificates, ContactIsNotProvenByRounding)
         leaves.contact_in_leaf({0.5, 1.0});
         ASSERT_GT(leaves.intervals(), 0u) << "contact counts as proven: " << lossless(pair);
     }
-    EXPECT_GT(computed_signs_differ, 100u) << "nothing was tested";
+    EXPECT_GT(computed_signs_differ, amount(100)) << "nothing was tested";
 }
 
 /// A flat face, or an edge, that reaches a point at rest, or a crossing edge, along one axis by less than rounding shows:

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "amount.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
 
@@ -79,7 +80,7 @@ TEST(ExtremeRange, SubnormalAxis)
     for (const auto kind : kinds) {
         for (const double t_max : {1.0, 0.7, 0.5, 0.3}) {
             const auto thin = [&](int, int axis) { return axis == 0 ? least * whole(random, 4) : whole(random, 8); };
-            same_on_all(kind, make(100'000, thin), over(t_max));
+            same_on_all(kind, make(amount(100'000), thin), over(t_max));
             const auto mixed = [&](int, int axis) { return axis == 0 ? least * whole(random, 4) : symmetric(random); };
             EXPECT_GT(expect_bounded(kind, make(5000, mixed), over(t_max)), 25u);
         }
@@ -181,7 +182,7 @@ TEST(ExtremeRange, RootsOfCoarseAnswers)
 {
     Random random{405};
     for (const auto kind : kinds) {
-        const std::vector<oracle::Pair> pairs = make(20'000, [&](int, int) { return symmetric(random); });
+        const std::vector<oracle::Pair> pairs = make(amount(20'000), [&](int, int) { return symmetric(random); });
         std::vector<oracle::Verdict> truth;
         for (const oracle::Pair& pair : pairs) truth.push_back(oracle::exact_ccd(kind, pair));
         for (const double tolerance : {1.0, 0.3, 0.1, 1e-3}) {
@@ -192,7 +193,7 @@ TEST(ExtremeRange, RootsOfCoarseAnswers)
                 ++counted;
                 EXPECT_EQ(found.roots[i], truth[i].roots) << tolerance << ": " << lossless(pairs[i]);
             }
-            EXPECT_GT(counted, 1000u);
+            EXPECT_GT(counted, amount(1000));
         }
     }
 }

@@ -3,12 +3,13 @@
 
 #include <string>
 
+#include "amount.hpp"
 #include "command_test.hpp"
 
 namespace fastccd::testing {
 
-/// Random pairs of the report: enough for all families of hard pairs, few enough for seconds.
-inline constexpr std::size_t report_pairs = 20'000;
+/// Pairs of the report: more than of any family of hard pairs, and few enough for seconds.
+inline constexpr std::size_t report_pairs = amount(20'000);
 
 struct Report {
     ScratchDirectory directory;

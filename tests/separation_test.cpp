@@ -20,6 +20,7 @@
 
 #include <separation_search.hpp>
 
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
@@ -170,24 +171,24 @@ void check_families(double relative, double t_max, double distance_tolerance, st
     expect_close(what, hard);
     expect_close(what + ", shapely", well);
     EXPECT_EQ(well.thin, 0u) << what;
-    EXPECT_GT(hard.reported, t_max < 0.1 ? 100u : hard.pairs / 3) << what;
+    EXPECT_GT(hard.reported, t_max < 0.1 ? amount(100) : hard.pairs / 3) << what;
 }
 
 TEST(Separation, MadePairs)
 {
-    for (const double relative : {1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0}) check_families(relative, 1.0, 1e-6, 40, 111);
+    for (const double relative : {1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0}) check_families(relative, 1.0, 1e-6, amount(40), 111);
 }
 
 TEST(Separation, ShorterSteps)
 {
     for (const double t_max : {0.7, 1.0 - 0x1p-53, 1e-3})
-        for (const double relative : {1e-9, 1e-3}) check_families(relative, t_max, 1e-6, 10, 112);
+        for (const double relative : {1e-9, 1e-3}) check_families(relative, t_max, 1e-6, amount(10), 112);
 }
 
 TEST(Separation, DistanceTolerances)
 {
     for (const double distance_tolerance : {0.0, 1e-12, 1e-2, 1.0})
-        for (const double relative : {1e-9, 1e-2}) check_families(relative, 1.0, distance_tolerance, 10, 113);
+        for (const double relative : {1e-9, 1e-2}) check_families(relative, 1.0, distance_tolerance, amount(10), 113);
 }
 
 /// d far below and far above the motion, up to the ends of double.
@@ -198,7 +199,7 @@ TEST(Separation, ExtremeDistances)
         for (const auto kind : kinds)
             for (const std::string& family : families()) {
                 std::vector<oracle::Pair> pairs;
-                generate(family, kind, 114, 10, pairs);
+                generate(family, kind, 114, amount(10), pairs);
                 for (const oracle::Pair& pair : pairs)
                     check(kind, pair, options_for(d), counts);
             }
@@ -233,7 +234,7 @@ TEST(Separation, ThinPairs)
     for (const double relative : {1e-12, 1e-6, 1e-3}) {
         Counts counts;
         for (const auto kind : kinds)
-            for (const oracle::Pair& pair : testing::ThinPairs{kind, 116}.next(1500)) check(kind, pair, options_for(relative * size_of(pair)), counts);
+            for (const oracle::Pair& pair : testing::ThinPairs{kind, 116}.next(amount(1500))) check(kind, pair, options_for(relative * size_of(pair)), counts);
         expect_close("thin pairs, d " + in_short(relative) + " s", counts);
     }
 }
@@ -245,7 +246,7 @@ TEST(Separation, KeepsEveryContactOfDistanceZero)
     for (const auto kind : kinds)
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
-            generate(family, kind, 117, 100, pairs);
+            generate(family, kind, 117, amount(100), pairs);
             for (const double d : {0x1p-1074, 1e-12, 1e-3}) {
                 const Answer found = answer(kind, interleaved(pairs), options_for(d));
                 for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -256,7 +257,7 @@ TEST(Separation, KeepsEveryContactOfDistanceZero)
                 }
             }
         }
-    EXPECT_GT(contacts, 10000u);
+    EXPECT_GT(contacts, amount(10000));
 }
 
 TEST(Separation, KeepsEveryContactOfPublicData)
@@ -293,7 +294,7 @@ TEST(Separation, BoundedLooks)
         for (const auto kind : kinds)
             for (const std::string& family : families()) {
                 std::vector<oracle::Pair> pairs;
-                generate(family, kind, 118, 200, pairs);
+                generate(family, kind, 118, amount(200), pairs);
                 for (const oracle::Pair& pair : pairs) {
                     const double d = relative * size_of(pair);
                     if (!(d > 0.0) || std::isinf(d)) continue;

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
@@ -65,18 +65,11 @@ void expect_nothing_missed_or_late(const std::vector<QuerySet>& sets, double tol
                 by_kind[1].false_alarms);
 }
 
-/// Rational arithmetic under sanitizers takes minutes for whole sets; the table is made without them.
-#ifdef FASTCCD_FEWER_EXACT_PAIRS
-constexpr std::size_t most_exact_pairs = 100;
-#else
-constexpr std::size_t most_exact_pairs = std::numeric_limits<std::size_t>::max();
-#endif
-
 /// A line per set: counts without and with the exact verdict. README's table is made from it.
 void expect_exact_verdict(std::vector<QuerySet> sets)
 {
     for (QuerySet& set : sets) {
-        const std::size_t size = std::min(set.pairs.size(), most_exact_pairs);
+        const std::size_t size = amount(set.pairs.size());
         set.pairs.resize(size);
         set.truth.resize(size);
         if (set.t_lo.empty()) continue;

@@ -4,6 +4,7 @@
 
 #include <separation_certificate.hpp>
 
+#include "../amount.hpp"
 #include "exact_number.hpp"
 #include "measured_bound.hpp"
 
@@ -132,7 +133,7 @@ void expect_certificates_hold(std::uint64_t seed)
 {
     Adversary adversary{seed};
     std::size_t ends = 0, whole = 0, turning = 0;
-    for (int k = 0; k < 40000; ++k) {
+    for (std::size_t k = 0; k < amount(40000); ++k) {
         constexpr double t_maxima[] = {1.0, 0.7, 1e-6};
         const Input in = adversary.input(t_maxima[k % 3], -4, 4);
         const Computed c{in};
@@ -168,8 +169,8 @@ void expect_certificates_hold(std::uint64_t seed)
     }
     std::printf("%s: %zu reaches with an end inside, %zu without, %zu intervals while turning\n",
                 kind == PairKind::vertex_face ? "vertex-face" : "edge-edge", ends, whole, turning);
-    EXPECT_GT(ends, 5000u);
-    EXPECT_GT(turning, 500u);
+    EXPECT_GT(ends, amount(5000));
+    EXPECT_GT(turning, amount(500));
 }
 
 TEST(SeparationBounds, CertificatesHold)
