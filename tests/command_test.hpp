@@ -18,6 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "amount.hpp"
+
 namespace fastccd::testing {
 
 using Arguments = std::vector<std::string>;
@@ -65,19 +67,6 @@ inline std::string read_text(const std::string& path)
     std::ifstream in{path, std::ios::binary};
     return {std::istreambuf_iterator<char>{in}, {}};
 }
-
-/// True where memory is not what users see.
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool sanitized = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-inline constexpr bool sanitized = true;
-#else
-inline constexpr bool sanitized = false;
-#endif
-#else
-inline constexpr bool sanitized = false;
-#endif
 
 /// How a run of the command ended. A signal n gives status 1000 + n.
 struct Outcome {

@@ -3,13 +3,12 @@
 
 #include <string>
 
-#include "amount.hpp"
 #include "command_test.hpp"
 
 namespace fastccd::testing {
 
-/// Pairs of the report: more than of any family of hard pairs, and few enough for seconds.
-inline constexpr std::size_t report_pairs = amount(20'000);
+/// Pairs of the report: more than of any family of hard pairs, and few enough for seconds; with sanitizers, for a minute.
+inline constexpr std::size_t report_pairs = sanitized ? 100 : 20'000;
 
 struct Report {
     ScratchDirectory directory;
