@@ -33,6 +33,9 @@ constexpr std::size_t first_options = 40, first_mesh = 64, first_summary = 88, f
 static_assert(sizeof(std::size_t) != 8 || (sizeof(fastccd_options) >= first_options && sizeof(fastccd_mesh) >= first_mesh &&
                                            sizeof(fastccd_summary) >= first_summary && sizeof(fastccd_step) >= first_step));
 
+/// No struct will ever be as large: its size was not set.
+constexpr std::size_t most_size = 4096;
+
 bool is_kind(int kind) { return kind == FASTCCD_VERTEX_FACE || kind == FASTCCD_EDGE_EDGE; }
 bool is_isa(int isa) { return isa >= FASTCCD_ISA_AUTOMATIC && isa <= FASTCCD_ISA_NEON; }
 
@@ -42,7 +45,7 @@ template <class Struct>
 bool read_struct(const Struct& given, std::size_t least, Struct& known)
 {
     const std::size_t size = given.size;
-    if (size < std::min(least, sizeof(Struct))) return false;
+    if (size < std::min(least, sizeof(Struct)) || size > most_size) return false;
     std::memcpy(&known, &given, std::min(size, sizeof(Struct)));
     const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
     return size <= sizeof(Struct) || std::all_of(bytes + sizeof(Struct), bytes + size, [](unsigned char byte) { return byte == 0; });
@@ -60,7 +63,7 @@ void write_struct(Struct known, Struct& given)
 template <class Struct>
 bool has_size(const Struct* given, std::size_t least)
 {
-    return given == nullptr || given->size >= std::min(least, sizeof(Struct));
+    return given == nullptr || (given->size >= std::min(least, sizeof(Struct)) && given->size <= most_size);
 }
 
 fastccd_options to_c(const Options& options)

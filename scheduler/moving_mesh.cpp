@@ -1,6 +1,8 @@
 // Vertex records and the checks of the indices.
 #include <fastccd/indexed.hpp>
 
+#include <limits>
+
 #include <guarded.hpp>
 #include <index_check.hpp>
 #include <mesh_boxes.hpp>
@@ -14,6 +16,8 @@ namespace {
 Status check_rows(const IndexView& rows, int columns, std::size_t vertices)
 {
     if (rows.size > 0 && rows.data == nullptr) return {Error::wrong_size};
+    // As in a view whose strides were forgotten: each face would be one vertex.
+    if ((rows.size > 0 && rows.column_stride == 0) || (rows.size > 1 && rows.row_stride == 0)) return {Error::wrong_size};
     for (std::size_t row = 0; row < rows.size; ++row)
         for (int column = 0; column < columns; ++column) {
             const std::int32_t vertex = rows.data[static_cast<std::ptrdiff_t>(row) * rows.row_stride + column * rows.column_stride];
@@ -51,7 +55,7 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_);
     if (!status_.ok() || vertex_count_ == 0) return;
 
-    records_ = allocate_aligned(vertex_count_ * record_doubles);
+    if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / record_doubles) records_ = allocate_aligned(vertex_count_ * record_doubles);
     boxes_.reset(new (std::nothrow) MeshBoxes);
     status_ = records_ == nullptr || boxes_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
         copy_positions(start, end, records_.get());

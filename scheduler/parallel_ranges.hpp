@@ -6,6 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/task_arena.h>
 
 namespace fastccd {
 
@@ -22,6 +23,9 @@ struct OwnContext : tbb::task_group_context {
     OwnContext() : task_group_context{isolated, fp_settings} {}
 };
 
+// Isolated: a caller that is a task itself must not, while it waits for other threads here, begin with another task of the program, which
+// might want a lock that the caller holds, or its thread's scratch.
+
 /// body(range) for parts of [0, size) that are together all of it; a part of at most `grain` is not divided.
 template <class Body>
 void for_each_range(std::size_t size, std::size_t grain, const Body& body)
@@ -32,7 +36,7 @@ void for_each_range(std::size_t size, std::size_t grain, const Body& body)
         return;
     }
     OwnContext context;
-    tbb::parallel_for(Range{0, size, grain}, body, context);
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(Range{0, size, grain}, body, context); });
 }
 
 /// join of body(range, identity) over such parts.
@@ -42,7 +46,7 @@ Value reduce_ranges(std::size_t size, std::size_t grain, const Value& identity, 
     if (size == 0) return identity;
     if (size <= grain || !workers_available()) return body(Range{0, size}, identity);
     OwnContext context;
-    return tbb::parallel_reduce(Range{0, size, grain}, identity, body, join, context);
+    return tbb::this_task_arena::isolate([&] { return tbb::parallel_reduce(Range{0, size, grain}, identity, body, join, context); });
 }
 
 }  // namespace fastccd

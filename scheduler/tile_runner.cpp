@@ -85,6 +85,14 @@ void keep_earlier(Contact& best, const Contact& other)
     if (other.toi < best.toi || (other.toi == best.toi && other.pair < best.pair)) best = other;
 }
 
+bool has_data(const PairView& pairs)
+{
+    const std::size_t arrays = pairs.layout() == PairView::Layout::strided ? pair_coordinates : 1;
+    for (std::size_t c = 0; c < arrays; ++c)
+        if (pairs.data(c) == nullptr) return false;
+    return true;
+}
+
 /// Isa::automatic honours FASTCCD_ISA; then the choice must be available.
 Status choose_kernels(Isa wanted, const KernelTable*& kernels)
 {
@@ -109,7 +117,7 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
 {
     if (!(options.tolerance > 0.0) || std::isinf(options.tolerance)) return {Error::bad_tolerance};
     if (!(options.t_max > 0.0 && options.t_max <= 1.0)) return {Error::bad_t_max};
-    if (source.view != nullptr && source.size > 0 && source.view->data() == nullptr) return {Error::wrong_size};
+    if (source.view != nullptr && source.size > 0 && !has_data(*source.view)) return {Error::wrong_size};
     if (!(options.minimum_separation >= 0.0) || std::isinf(options.minimum_separation)) return {Error::bad_minimum_separation};
     if (!(options.distance_tolerance >= 0.0) || std::isinf(options.distance_tolerance)) return {Error::bad_distance_tolerance};
     if (options.exact && options.minimum_separation > 0.0) return {Error::exact_separation};

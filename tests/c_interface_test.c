@@ -226,6 +226,8 @@ static void test_other_sizes(void)
     EXPECT(summary.known.size == sizeof summary && summary.known.pairs == 1 && summary.later == 0.0);
     summary.known.size = 8;
     EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, &summary.known, NULL) == FASTCCD_BAD_ARGUMENT);
+    memset(&summary, 0xcc, sizeof summary); /* not initialised */
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, &summary.known, NULL) == FASTCCD_BAD_ARGUMENT);
     mesh.size = 8;
     EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
 }

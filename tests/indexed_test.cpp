@@ -311,8 +311,34 @@ TEST(Indexed, MeshesThatAreNotMeshes)
     EXPECT_EQ(status.error, Error::index_out_of_range);
     EXPECT_EQ(status.pair, 1u);
     EXPECT_EQ(status.index, 5);
+    // Strides forgotten: all columns would be the first one.
+    const IndexView without_strides{faces.data(), 1};
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), without_strides, {}}).status().error, Error::wrong_size);
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), {}, without_strides}).status().error, Error::wrong_size);
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), IndexView{faces.data(), 2, 0, 1}, {}}).status().error, Error::wrong_size);
+    EXPECT_TRUE((MovingMesh{positions(5), positions(5), IndexView::rows(faces.data(), 1, 3), {}}).status().ok());
+    // More records than there can be.
+    const double* const one = made.start.data();
+    const PositionView endless = PositionView::xyz(one, one, one, 0, std::size_t{1} << 61);
+    EXPECT_EQ((MovingMesh{endless, endless, {}, {}}).status().error, Error::out_of_memory);
     std::vector<double> toi;
     EXPECT_EQ(time_of_impact(MovingMesh{}, std::span<const VertexFace>{}, {}, toi).error, Error::wrong_size);
+}
+
+TEST(Indexed, AMeshThatWasMovedIsNoMeshAnyMore)
+{
+    const MadeMesh made{70, 2};
+    MovingMesh first = made.mesh();
+    const std::size_t vertices = first.vertex_count();
+    MovingMesh second{std::move(first)};
+    EXPECT_EQ(second.vertex_count(), vertices);
+    std::vector<double> toi(made.vertex_face.size());
+    const std::span<const VertexFace> pairs{made.vertex_face};
+    EXPECT_TRUE(time_of_impact(second, pairs, {}, toi).ok());
+    EXPECT_EQ(time_of_impact(first, pairs, {}, toi).error, Error::wrong_size);  // NOLINT(bugprone-use-after-move)
+    first = std::move(second);
+    EXPECT_TRUE(time_of_impact(first, pairs, {}, toi).ok());
+    EXPECT_EQ(time_of_impact(second, pairs, {}, toi).error, Error::wrong_size);  // NOLINT(bugprone-use-after-move)
 }
 
 }  // namespace

@@ -223,6 +223,8 @@ mutant 'environment: as the caller left it' scheduler/guarded.hpp 's/const Defau
 mutant 'environment: threads as the arena left it' scheduler/parallel_ranges.hpp 's/isolated, fp_settings/isolated, default_traits/' floating_point_environment_test
 mutant 'environment: not given back' scheduler/default_floating_point.cpp 's/_mm_setcsr\(before_\);/;/' floating_point_environment_test
 
+mutant 'tasks: those of the program begun meanwhile' scheduler/parallel_ranges.hpp 's/tbb::this_task_arena::isolate\(\[&\] \{ (tbb::parallel_for\(.*?\);) \}\);/$1/' host_tasks_test
+
 # ---- Boxes of indexed pairs
 boxes=scheduler/mesh_boxes.cpp
 mutant 'boxes: highest is the lower line' $boxes 's/-1 - (start|end)/-$1/g' boxes_test

@@ -8,6 +8,12 @@ target_compile_options(c_interface_test PRIVATE -Wall -Wextra -pedantic -Werror)
 target_link_libraries(c_interface_test PRIVATE fastccd::shared m)
 add_test(NAME c_interface_test COMMAND c_interface_test)
 
+add_executable(unload_test unload_test.c)
+set_target_properties(unload_test PROPERTIES C_STANDARD 99)
+target_include_directories(unload_test PRIVATE ${PROJECT_SOURCE_DIR}/kernels/include)
+target_link_libraries(unload_test PRIVATE ${CMAKE_DL_LIBS})
+add_test(NAME unload_test COMMAND unload_test $<TARGET_FILE:fastccd_shared>)
+
 # The version is in two places.
 file(STRINGS ${PROJECT_SOURCE_DIR}/kernels/include/fastccd/version.h version_line REGEX "define FASTCCD_VERSION \"")
 if(NOT version_line MATCHES "\"${PROJECT_VERSION}\"")

@@ -23,6 +23,8 @@ if(FASTCCD_INSTALL OR BUILD_SHARED_LIBS)
   if(NOT APPLE)
     # Also hides what templates of the standard library leave behind.
     target_link_options(fastccd_shared PRIVATE LINKER:--version-script=${CMAKE_CURRENT_LIST_DIR}/exports.map)
+    # It stays in memory after dlclose: threads of oneTBB, which goes with it otherwise, may still run then.
+    target_link_options(fastccd_shared PRIVATE LINKER:-z,nodelete)
     set_target_properties(fastccd_shared PROPERTIES LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/exports.map)
   endif()
 endif()
@@ -59,6 +61,12 @@ if(FASTCCD_EXACT)
 endif()
 # Where the file lies decides the prefix, so that an installation can be moved.
 file(RELATIVE_PATH pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+foreach(dir IN ITEMS INCLUDEDIR LIBDIR)
+  set(pc_${dir} "\${prefix}/${CMAKE_INSTALL_${dir}}")
+  if(IS_ABSOLUTE "${CMAKE_INSTALL_${dir}}")
+    set(pc_${dir} "${CMAKE_INSTALL_${dir}}")
+  endif()
+endforeach()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/fastccd.pc.in ${PROJECT_BINARY_DIR}/fastccd.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/fastccd.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <type_traits>
+#include <utility>
 
 #include <fastccd/aligned_doubles.hpp>
 #include <fastccd/export.h>
@@ -62,9 +64,9 @@ public:
 private:
     template <class T>
     PositionView(const T* x, const T* y, const T* z, std::ptrdiff_t stride, std::size_t n)
-        : axis_{x, y, z}, stride_{stride}, size_{n}, is_float_{sizeof(T) == sizeof(float)}
+        : axis_{x, y, z}, stride_{stride}, size_{n}, is_float_{std::is_same_v<T, float>}
     {
-        static_assert(sizeof(T) == sizeof(float) || sizeof(T) == sizeof(double), "positions are float or double");
+        static_assert(std::is_same_v<T, float> || std::is_same_v<T, double>, "positions are float or double");
     }
 
     const void* axis_[3] = {};
@@ -78,7 +80,7 @@ struct IndexView {
     const std::int32_t* data = nullptr;
     std::size_t size = 0;            ///< Rows.
     std::ptrdiff_t row_stride = 0;     ///< Elements from a row to the next,
-    std::ptrdiff_t column_stride = 0;  ///< and within a row.
+    std::ptrdiff_t column_stride = 0;  ///< and within a row; neither may be 0.
 
     static IndexView rows(const std::int32_t* data, std::size_t n, int columns) { return {data, n, columns, 1}; }
     static IndexView columns(const std::int32_t* data, std::size_t n)
@@ -100,8 +102,16 @@ struct ReleaseBoxes {
 class MovingMesh {
 public:
     MovingMesh() = default;
+    /// `other` is as if made by default then: no mesh.
+    MovingMesh(MovingMesh&& other) noexcept { swap(other); }
+    MovingMesh& operator=(MovingMesh&& other) noexcept
+    {
+        MovingMesh taken{std::move(other)};
+        swap(taken);
+        return *this;
+    }
     /// Positions at t = 0 and t = 1 of the same vertices; faces n x 3 and edges n x 2, either may be empty.
-    /// status() tells what is wrong, if anything: wrong_size for positions of different size or missing data,
+    /// status() tells what is wrong, if anything: wrong_size for positions of different size, missing data or a stride of 0,
     /// index_out_of_range with the row at fault as `pair` for faces, then edges, out_of_memory. Calls that are given
     /// a mesh with an error return that error. O(vertices + faces + edges), positions on all threads of the arena.
     FASTCCD_API MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges) noexcept;
@@ -116,6 +126,16 @@ public:
     [[nodiscard]] MeshBoxes* boxes() const noexcept { return boxes_.get(); }
 
 private:
+    void swap(MovingMesh& other) noexcept
+    {
+        std::swap(records_, other.records_);
+        std::swap(boxes_, other.boxes_);
+        std::swap(vertex_count_, other.vertex_count_);
+        std::swap(faces_, other.faces_);
+        std::swap(edges_, other.edges_);
+        std::swap(status_, other.status_);
+    }
+
     AlignedDoubles records_;
     std::unique_ptr<MeshBoxes, ReleaseBoxes> boxes_;
     std::size_t vertex_count_ = 0;
