@@ -135,7 +135,8 @@ ExactContact exact_contact(PairKind kind, const double* coordinates, const Searc
     const auto lower_bound = [&](AlgebraicTime& time) {
         const mpz_class leaf = time.floor_times_two_to(depth);
         if (leaf != 0 || time.is_start()) return leaf.get_d() * parameters.leaf_width;
-        for (unsigned finer = depth + 1; finer <= 1074; ++finer)
+        constexpr unsigned finest = 1074;  // the least double is 2^-1074
+        for (unsigned finer = depth + 1; finer <= finest; ++finer)
             if (time.floor_times_two_to(finer) != 0) return std::ldexp(1.0, -static_cast<int>(finer));
         return 0.0;
     };

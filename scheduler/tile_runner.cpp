@@ -137,8 +137,8 @@ scalar::SearchResult answer_pair(const Job& job, const double* coordinates, doub
         return scalar::separation_search(job.kind, coordinates, job.parameters, time_limit(cutoff));
     const IntervalKernel* const lanes = job.kernels == nullptr ? nullptr : &job.kernels->intervals;
     scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters, lanes);
-    const bool settled = found.proof == scalar::Proof::leaf && found.toi > 0.0;  // 0: apart at the start, or not, to within rounding
-    if (job.exact && std::isfinite(found.toi) && !settled) settle(job, coordinates, found);
+    // Contact proven in a leaf has a certain sign at the leaf's start, so even in the first leaf toi is not 0.
+    if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
     return found;
 }
 

@@ -218,6 +218,9 @@ mutant 'totals: first contact of the search not seen' $tile 's/earliest = std::m
 mutant 'totals: invalid pairs are contacts' $tile 's/reported - invalid/reported/' api_test
 mutant 'totals: invalid pairs are proven' $tile 's/proven - invalid/proven/' api_test
 
+# ---- The exact verdict
+mutant 'exact: 0 within the first leaf' scalar/exact_contact.cpp 's/return std::ldexp\(1\.0, -static_cast<int>\(finer\)\)/return 0.0/' exact_test
+
 # ---- The caller's floating-point environment
 mutant 'environment: as the caller left it' scheduler/guarded.hpp 's/const DefaultFloatingPoint defaults;//' floating_point_environment_test
 mutant 'environment: threads as the arena left it' scheduler/parallel_ranges.hpp 's/isolated, fp_settings/isolated, default_traits/' floating_point_environment_test

@@ -37,7 +37,7 @@ struct Options {
     bool reference = false;
     /// Settle by rational arithmetic every contact that rounding leaves possible but not proven, or does not locate
     /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50
-    /// at least), and 0 for contact at t = 0 alone (or before 2^-1021). Costs tens of microseconds and allocations for each such pair. Needs a build with GMP, which ends the
+    /// at least), and 0 for contact at t = 0 alone (or before 2^-1071). Costs tens of microseconds and allocations for each such pair. Needs a build with GMP, which ends the
     /// program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
