@@ -180,11 +180,22 @@ TEST(CommandErrors, InstructionSetsAreListedForcedAndRefused)
 
 TEST(CommandErrors, HitsOnStandardOutputMoveTheReport)
 {
-    const Outcome outcome = run({"random", "--kind", "vf", "--pairs", "1000", "--hits", "-", "--json"});
-    EXPECT_EQ(outcome.status, 0);
-    EXPECT_EQ(outcome.out.rfind("pair,toi\n", 0), 0U);
-    const auto lines = std::count(outcome.out.begin(), outcome.out.end(), '\n');
-    EXPECT_EQ(Json::parse(outcome.error)["contacts"], lines - 1);
+    for (const char* name : {"-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"}) {
+        SCOPED_TRACE(name);
+        const Outcome outcome = run({"random", "--kind", "vf", "--pairs", "1000", "--hits", name, "--json"});
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_EQ(outcome.out.rfind("pair,toi\n", 0), 0U);
+        const auto lines = std::count(outcome.out.begin(), outcome.out.end(), '\n');
+        EXPECT_EQ(Json::parse(outcome.error)["contacts"], lines - 1);
+    }
+}
+
+TEST(CommandErrors, HitsOnADescriptorThatIsNotOpen)
+{
+    const Outcome outcome = run({"random", "--kind", "vf", "--pairs", "1000", "--hits", "/dev/fd/99"});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.error, "fastccd: /dev/fd/99: cannot be opened: Bad file descriptor\n");
+    EXPECT_EQ(outcome.out, "");
 }
 
 TEST(CommandErrors, OutputThatGoesNowhere)

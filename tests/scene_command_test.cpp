@@ -204,9 +204,15 @@ TEST(SceneCommand, VerticesThatAreNotFiniteAreNamedAndTheOthersAnswered)
     for (const Arguments& more : {Arguments{}, Arguments{"--quiet"}}) {
         EXPECT_EQ(run(scene(frames, more)).error, outcome.error);
     }
+    // A file that is standard error too keeps the rows and what follows them.
+    const std::string rows = run(scene(frames, {"--quiet", "--hits", "-"})).out;
+    EXPECT_EQ(run(scene(frames, {"--quiet", "--hits", "/dev/stderr"})).error, rows + outcome.error);
     std::vector<std::string> many(9, frames[1]);
     EXPECT_NE(run(scene(many)).error.find("16 vertices"), std::string::npos);
     EXPECT_NE(run(scene(many)).error.find("; step 4: 6, 8 and 6 more\n"), std::string::npos) << run(scene(many)).error;
+    const Json all = Json::parse(run(scene(many, {"--json"})).out)["invalid_vertices"];
+    EXPECT_EQ(all.size(), 16);
+    EXPECT_EQ(all[15], (Json{{"step", 7}, {"vertex", 8}}));
 }
 
 // ---- Public scenes ----------------------------------------------------------------------------------------

@@ -1,7 +1,11 @@
 #include "output_file.hpp"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
+#include <initializer_list>
+#include <optional>
+#include <string>
 #include <system_error>
 
 #include <fcntl.h>
@@ -18,6 +22,23 @@ namespace {
 [[noreturn]] void fail(const std::filesystem::path& path, std::string_view what, int error)
 {
     throw InputError(path, fmt::format("{}: {}", what, std::generic_category().message(error)));
+}
+
+/// The descriptor of this process that a path names. Such a file is open already, perhaps shared with others who
+/// write to it and at a place of its own: opened anew or replaced, what they write would be lost.
+std::optional<int> open_descriptor(const std::filesystem::path& path)
+{
+    const std::string name = path;
+    if (name == "-" || name == "/dev/stdout") return STDOUT_FILENO;
+    if (name == "/dev/stderr") return STDERR_FILENO;
+    for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
+        if (!name.starts_with(folder)) continue;
+        const char* const end = name.data() + name.size();
+        int descriptor = 0;
+        const auto [rest, error] = std::from_chars(name.data() + folder.size(), end, descriptor);
+        if (error == std::errc{} && rest == end && descriptor >= 0) return descriptor;
+    }
+    return std::nullopt;
 }
 
 int open_in_place(const std::filesystem::path& path)
@@ -47,14 +68,14 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
 
 bool OutputFile::is_standard_output(const std::filesystem::path& target)
 {
-    return target == "-" || target == "/dev/stdout";
+    return open_descriptor(target) == STDOUT_FILENO;
 }
 
 OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
 {
-    if (is_standard_output(target)) {
-        target_ = "standard output";
-        descriptor_ = ::dup(STDOUT_FILENO);
+    if (const std::optional<int> descriptor = open_descriptor(target)) {
+        if (*descriptor == STDOUT_FILENO) target_ = "standard output";
+        descriptor_ = ::fcntl(*descriptor, F_DUPFD_CLOEXEC, 0);
         if (descriptor_ < 0) fail(target_, "cannot be opened", errno);
         return;
     }

@@ -14,8 +14,8 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
 /// A file that appears under its name complete or not at all: bytes go to a temporary file in the
 /// same directory, renamed over the target by commit() and removed by the destructor otherwise.
 ///
-/// "-" and "/dev/stdout" are standard output; other devices and pipes are written directly, since
-/// nothing can be renamed over them.
+/// "-" is standard output. It and other descriptors of this process ("/dev/stdout", "/dev/fd/3") are written where
+/// they stand; other devices and pipes are written directly, since nothing can be renamed over them.
 class OutputFile {
 public:
     /// Opens the output. Throws InputError when it cannot be created, is a directory or is an

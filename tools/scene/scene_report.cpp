@@ -1,5 +1,6 @@
 #include "scene_report.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <string_view>
 
@@ -16,6 +17,9 @@ namespace fastccd::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// By the warning; --json names all.
+constexpr std::size_t most_invalid_vertices_named = 10;
 
 constexpr PairKind both_kinds[] = {PairKind::vertex_face, PairKind::edge_edge};
 
@@ -39,14 +43,15 @@ std::string what_touches(const SceneContact& contact)
 
 std::string invalid_vertices(const SceneTotals& totals)
 {
+    const std::size_t named = std::min(totals.invalid.size(), most_invalid_vertices_named);
     std::string text;
-    for (std::size_t i = 0; i < totals.first_invalid.size(); ++i) {
-        const InvalidVertex& invalid = totals.first_invalid[i];
-        const bool new_step = i == 0 || invalid.step != totals.first_invalid[i - 1].step;
+    for (std::size_t i = 0; i < named; ++i) {
+        const InvalidVertex& invalid = totals.invalid[i];
+        const bool new_step = i == 0 || invalid.step != totals.invalid[i - 1].step;
         text += new_step ? fmt::format("{}step {}: {}", i == 0 ? "" : "; ", invalid.step, invalid.vertex)
                          : fmt::format(", {}", invalid.vertex);
     }
-    const std::size_t more = totals.invalid - totals.first_invalid.size();
+    const std::size_t more = totals.invalid.size() - named;
     if (more > 0) text += fmt::format(" and {} more", with_commas(more));
     return text;
 }
@@ -133,10 +138,10 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
         line("earliest", fmt::format("toi {:.17g} in step {}, {}", all.earliest->toi, all.earliest->step,
                                      what_touches(*all.earliest)));
     }
-    line("invalid", totals.invalid == 0 ? "0 vertices"
-                                        : fmt::format("{} vertices with NaN or infinity, left out with all that they "
-                                                      "are part of",
-                                                      with_commas(totals.invalid)));
+    line("invalid", totals.invalid.empty()
+                        ? "0 vertices"
+                        : fmt::format("{} vertices with NaN or infinity, left out with all that they are part of",
+                                      with_commas(totals.invalid.size())));
     line("certified search", fmt::format("{} pairs", with_commas(all.scalar_pairs)));
     line("reading", fmt::format("{:.3g} s", totals.read_seconds));
     line("broad phase", fmt::format("{:.3g} s, {:.3g} million candidates/s", all.broad_seconds,
@@ -156,9 +161,9 @@ std::string scene_json_report(const SceneOptions& options, const SceneTotals& to
     json["faces"] = totals.faces;
     json["edges"] = totals.edges;
     add_kinds(json, sum(totals, PairKind::vertex_face), sum(totals, PairKind::edge_edge));
-    json["invalid"] = totals.invalid;
+    json["invalid"] = totals.invalid.size();
     json["invalid_vertices"] = Json::array();
-    for (const InvalidVertex& invalid : totals.first_invalid) {
+    for (const InvalidVertex& invalid : totals.invalid) {
         json["invalid_vertices"].push_back({{"step", invalid.step}, {"vertex", invalid.vertex}});
     }
     json["read_seconds"] = totals.read_seconds;
@@ -192,11 +197,11 @@ void print_scene_report(const SceneOptions& options, const SceneTotals& totals)
     } else if (!options.common.quiet) {
         write_all(descriptor, scene_text_report(options, totals), stream);
     }
-    if (totals.invalid > 0) {
+    if (!totals.invalid.empty()) {
         write_all(STDERR_FILENO,
                   fmt::format("fastccd: warning: {} vert{} with NaN or infinity, left out with all that {} part of: {}\n",
-                              with_commas(totals.invalid), totals.invalid == 1 ? "ex" : "ices",
-                              totals.invalid == 1 ? "it is" : "they are", invalid_vertices(totals)),
+                              with_commas(totals.invalid.size()), totals.invalid.size() == 1 ? "ex" : "ices",
+                              totals.invalid.size() == 1 ? "it is" : "they are", invalid_vertices(totals)),
                   "standard error");
     }
 }

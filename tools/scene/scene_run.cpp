@@ -181,11 +181,7 @@ void note_invalid_vertices(std::size_t step_number, const Step& step, SceneTotal
 {
     const std::vector<std::int32_t> vertices = non_finite_vertices(step.positions0, step.positions1);
     totals.steps.back().invalid = vertices.size();
-    totals.invalid += vertices.size();
-    for (const std::int32_t vertex : vertices) {
-        if (totals.first_invalid.size() == most_invalid_vertices_named) break;
-        totals.first_invalid.push_back({.step = step_number, .vertex = vertex});
-    }
+    for (const std::int32_t vertex : vertices) totals.invalid.push_back({.step = step_number, .vertex = vertex});
 }
 
 SceneTotals answer_steps(const SceneOptions& options)

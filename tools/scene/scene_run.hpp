@@ -15,12 +15,9 @@ struct SceneOptions {
     std::string save_pairs;  ///< Folder for the candidates as .npy; empty: none.
 };
 
-/// Invalid vertices that the report names.
-inline constexpr std::size_t most_invalid_vertices_named = 10;
-
 /// Answers all candidates of all steps, with progress bar, hits and saved pairs, on the threads asked for.
-/// Memory: two frames and the search trees over one, whatever the number of candidates. Throws InputError
-/// naming the file at fault, Interrupted after a signal; no file stays behind then.
+/// Memory: two frames, the search trees over one and a list of the invalid vertices, whatever the number of
+/// candidates. Throws InputError naming the file at fault, Interrupted after a signal; no file stays behind then.
 [[nodiscard]] SceneTotals run_scene(const SceneOptions& options);
 
 }  // namespace fastccd::tools

@@ -52,9 +52,8 @@ struct SceneTotals {
     std::size_t faces = 0;
     std::size_t edges = 0;
     std::vector<StepTotals> steps;
-    std::size_t invalid = 0;                   ///< Sum over the steps.
-    std::vector<InvalidVertex> first_invalid;  ///< The first few of them.
-    double read_seconds = 0;                   ///< Reading frames and finding the edges.
+    std::vector<InvalidVertex> invalid;  ///< Of all steps.
+    double read_seconds = 0;             ///< Reading frames and finding the edges.
     Isa isa = Isa::automatic;
     int threads = 1;
 };
