@@ -144,6 +144,23 @@ TEST_P(Adapter, MinimumSeparation)
     EXPECT_EQ(toi, 0.0);
 }
 
+TEST_P(Adapter, AtItsTimeAPairIsAsCloseAsTheMinimumSeparationPlusTheTolerance)
+{
+    // A vertex passes the corner x1 at a distance that is 0.8 at its least: a square root of time, which no division gives.
+    const oracle::Pair passing{{{-3, 0.8, 0}, {0, 0, 0}, {-1, -2, 0}, {1, -2, 0}, {3, 0.8, 0}, {0, 0, 0}, {-1, -2, 0}, {1, -2, 0}}};
+    for (const double scale : {1.0, 1e-3, 1e3})
+        for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
+            oracle::Pair pair = passing;
+            for (auto& point : pair)
+                for (double& x : point) x *= scale;
+            double toi = -1.0;
+            ASSERT_TRUE(GetParam()(oracle::Kind::vertex_face, pair, {scale, tolerance * scale}, toi));
+            const double x = 6 * toi - 3, farther = std::sqrt(x * x + 0.64) - 1.0;
+            EXPECT_GE(farther, -1e-14);
+            EXPECT_LE(farther, tolerance + 1e-13);
+        }
+}
+
 TEST_P(Adapter, WhatCannotBeAnsweredIsAnError)
 {
     double toi = 7.0;

@@ -52,10 +52,11 @@ private:
     }
 };
 
-/// True if the pair touches within [0, t_max]; toi is then a lower bound of the first time, less than `distance` of motion
-/// before it, to within rounding; otherwise toi is +infinity. These interfaces have no other way to name what cannot be
-/// answered: throws std::invalid_argument for a minimum separation that is negative or not finite, t_max outside [0, 1], a
-/// distance that is not positive, and coordinates that are not finite.
+/// True if the pair touches within [0, t_max], or comes within the minimum separation; toi is then a lower bound of the first
+/// time, otherwise +infinity. At toi the two are apart by less than the minimum separation plus `distance`, to within
+/// rounding. These interfaces have no other way to name what cannot be answered: throws std::invalid_argument for a minimum
+/// separation that is negative or not finite, t_max outside [0, 1], a distance that is not positive, and coordinates that are
+/// not finite.
 inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
 {
     if (!is_finite(minimum_separation) || minimum_separation < 0.0)
@@ -64,6 +65,8 @@ inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separa
     if (is_nan(distance) || distance <= 0.0) throw std::invalid_argument("fastccd: the tolerance must be positive");
     Options options;
     options.minimum_separation = minimum_separation;
+    // No coarser than by default, so that a pair a little farther apart than that at the start is let go.
+    if (minimum_separation > 0.0) options.distance_tolerance = std::min(options.distance_tolerance, distance / minimum_separation);
     const double displacement = pair.largest_displacement(kind);
     options.tolerance = std::clamp(distance / displacement, std::numeric_limits<double>::min(), 1.0);
     if (!(displacement > 0.0)) options.tolerance = 1.0;

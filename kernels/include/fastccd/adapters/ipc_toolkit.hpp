@@ -2,8 +2,9 @@
 // forward to it, or use it in its place. What differs:
 //
 // - toi is the certified lower bound itself: no conservative rescaling. Whoever wants a margin multiplies.
-// - With a `min_distance`, toi = 0 means that the pair is within it at the start. One that is negative, a tmax outside [0, 1], points of other than 2 or 3 coordinates, a tolerance that is not
-//   positive, and coordinates that are not finite are std::invalid_argument.
+// - With a `min_distance`, toi = 0 means that the pair is within it at the start. One that is negative, a tmax outside [0, 1],
+//   points of other than 2 or 3 coordinates, a tolerance that is not positive, and coordinates that are not finite are
+//   std::invalid_argument.
 #pragma once
 
 #include <fastccd/adapters/distance_tolerance.hpp>
@@ -53,7 +54,7 @@ public:
                                  tolerance, tmax, toi);
     }
 
-    /// A distance: how far the two may still be apart at toi, rounding aside.
+    /// A distance: how much farther than min_distance the two may still be apart at toi, rounding aside.
     double tolerance = 1e-6;
 
 private:

@@ -6,11 +6,11 @@
 // code that calls ticcd::vertexFaceCCD and ticcd::edgeEdgeCCD compiles unchanged. What differs:
 //
 // - Rounding needs no bounding box of the scene: `err` is not looked at. Work is bounded without `max_itr`, and the
-//   tolerance is always reached: output_tolerance is the tolerance.
+//   tolerance is always reached, to within rounding: output_tolerance is the tolerance.
 // - `no_zero_toi` needs no second search: a pair that is apart at t = 0, beyond rounding, has toi > 0 anyway. toi = 0 means
 //   contact at the start, to within rounding.
-// - With a minimum separation `ms`, toi = 0 means that the pair is within it at the start. One that is negative, a t_max outside [0, 1], a tolerance that is not positive, and
-//   coordinates that are not finite are std::invalid_argument.
+// - With a minimum separation `ms`, toi = 0 means that the pair is within it at the start. One that is negative, a t_max
+//   outside [0, 1], a tolerance that is not positive, and coordinates that are not finite are std::invalid_argument.
 #pragma once
 
 #include <fastccd/adapters/distance_tolerance.hpp>
@@ -27,8 +27,8 @@ inline constexpr Scalar DEFAULT_CCD_DISTANCE_TOL = 1e-6;
 /// Accepted and without effect.
 enum class CCDRootFindingMethod { DEPTH_FIRST_SEARCH, BREADTH_FIRST_SEARCH };
 
-/// True if the edges a and b touch in [0, t_max]. toi: lower bound of the first time, within about `tolerance`, a distance,
-/// of motion before it; +infinity if they do not touch.
+/// True if the edges a and b come within `ms` of each other in [0, t_max]. toi: lower bound of the first time, at which they are
+/// apart by less than `ms` plus `tolerance`, a distance; +infinity if they do not come so close.
 inline bool edgeEdgeCCD(const Vector3& ea0_t0, const Vector3& ea1_t0, const Vector3& eb0_t0, const Vector3& eb1_t0, const Vector3& ea0_t1,
                         const Vector3& ea1_t1, const Vector3& eb0_t1, const Vector3& eb1_t1, const Array3& /*err*/, const Scalar ms,
                         Scalar& toi, const Scalar tolerance, const Scalar t_max, const long /*max_itr*/, Scalar& output_tolerance,
