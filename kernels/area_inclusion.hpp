@@ -2,9 +2,9 @@
 // rounding, as a proof of absence within delta of a time.
 //
 // If there is contact at some s with |s - c| <= delta, then at c
-//     vertex-face:  |r1 x r2| + |r2 x r3| + |r3 x r1| - |whole|         <= 2 sum E,
-//     edge-edge:  | |r1 x r2| + |r1 x r3| - |r2 x r3| - |second split| | <= 2 sum E
-// in doubled areas, with E = delta C1 C2 + delta^2 C2^2 / 2 for each of the four triangles (eq. 6) and
+//     vertex-face:  |r1 x r2| + |r2 x r3| + |r3 x r1| - |w|     <= 2 sum E,
+//     edge-edge:  | |r1 x r2| + |r1 x r3| - |r2 x r3| - |w| |   <= 2 sum E
+// in doubled areas, w = r1 x r2 + r2 x r3 + r3 x r1 that of x1 x2 x3, with E = delta C1 C2 + delta^2 C2^2 / 2 for each of the four triangles (eq. 6) and
 // C1, C2 the largest edge and the largest velocity difference. Both are bounded from above here, once for
 // all four triangles: C1 by the largest edge over both ends of the interval (an edge is a convex function
 // of time), so that the same constants serve every time c.
@@ -20,7 +20,7 @@ FASTCCD_INLINE L norm(const Vector3<L>& v)
     return sqrt(dot(v, v));
 }
 
-/// C1 and C2 of eq. 6 over the whole motion, but for a dozen roundings.
+/// C1 and C2 of eq. 6 over the whole motion of r as computed, with velocities as computed, but for a dozen roundings.
 template <class L>
 struct MotionBounds {
     L edge, speed;
@@ -45,8 +45,8 @@ template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> area_certificate(const RelativeMotion<L>& r, const MotionBounds<L>& motion_bound, L rounding, L centre,
                                             L delta)
 {
-    // The roundings of squares, sums, roots and products below, a dozen u, rounded up; what the differences
-    // themselves are off by is in bounds.area().
+    // The roundings of squares, sums, roots and products below, a dozen u, rounded up; that of the velocities
+    // themselves is in bounds.area().
     const L inflate = broadcast<L>(1.0 + 0x1p-30);
     // 2 sum E = 2 * 4 * (delta C1 C2 + delta^2 C2^2 / 2)
     const L motion = delta * motion_bound.speed;

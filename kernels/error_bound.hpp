@@ -9,7 +9,7 @@
 //
 // First-order terms are added up below; terms in u^2 and the rounding of the bounds themselves (a
 // few products, each u) are covered by `slack`, which is added to each constant: every constant is
-// below 2^10 + 2^7 B-multiples, so u^2 terms are below 2^-40 of it, and 3 products round by 3u < 2^-50.
+// below 2^14, so u^2 terms are below 2^-39 of it, and 3 products round by 3u < 2^-51.
 #pragma once
 
 #include <lane.hpp>
@@ -31,7 +31,7 @@ struct ErrorBounds {
     static constexpr double u = 0x1p-53;
     static constexpr double slack = 2.0;
 
-    explicit constexpr ErrorBounds(double t_max)
+    FASTCCD_INLINE explicit constexpr ErrorBounds(double t_max)
         : rho{t_max == 1.0 ? 1.0 : 10.0}, largest_lane_extent{t_max == 1.0 ? largest_extent : 0.25 * largest_extent * t_max}
     {
     }
@@ -184,8 +184,8 @@ struct ErrorBounds {
     static constexpr double power_basis_value = 196.0;
 
     /// If f^, evaluated by Horner's rule, is beyond this times B on the same side at both ends of a
-    /// piece, f^ has no root in the piece: twice the shift (f^ to f~ and back), once the evaluation,
-    /// on each of the two ends of the comparison.
+    /// piece, f^ has no root in the piece: at both ends f^ exceeds this less the error of the evaluation, so f~ exceeds
+    /// that less one shift; f~ is monotone, so it does so in between, and f^ exceeds it less a second shift.
     [[nodiscard]] FASTCCD_INLINE static constexpr double monotone_piece() { return (2 * monotone_shift + power_basis_value + slack) * u; }
 
     /// On an interval of width w inside a piece, inner Bernstein coefficients of f^ differ from the
@@ -199,15 +199,18 @@ struct ErrorBounds {
     /// 2 N and 6 N; a norm errs by the components' errors plus 4 u of its size (squares, sums, root).
     /// Three single ones: 3 (4 rho + 16 + 8); the sum: 12 rho + 58 + 24; three additions of size at most
     /// 12 N: 36. Vertex-face and edge-edge alike: 24 rho + 190.
-    /// The edges and velocities in C1 and C2 are differences of computed vectors, off by up to 2 rho u X per
-    /// component, which may be all there is of them. A motion off by that changes a component of a cross
-    /// product by at most 8 rho u Y Z, six times over (the sum counts three), and so do edges: 96 rho.
-    [[nodiscard]] FASTCCD_INLINE constexpr double area() const { return (120 * rho + 190 + slack) * u; }
+    /// rho is in there once already, as the difference of the computed r_i from the exact ones, at contact: points off by
+    /// e u X move a component of a cross product by 4 e u Y Z, six times over (the sum counts three), 24 e in all; e = rho.
+    /// The lemma is applied to r_i(c) + (s - c) v_i, v_i the computed velocity, of which C2 is a bound. It is rounded, by u
+    /// times at most 2 X, so that at the time s of contact this motion is off by e = 2: 48 more. Its edges at c are those of
+    /// r_i. And an interval as narrow as the spacing of doubles has no double in its middle: c is off by u / 2, within which
+    /// points move by u X, e = 1: 24 more.
+    [[nodiscard]] FASTCCD_INLINE constexpr double area() const { return (24 * rho + 262 + slack) * u; }
 };
 
 /// Absolute floor under extents, against what underflows; areas are 2^-532 and volumes 2^-798 at least, then. Lanes take pairs
-/// whose coordinates differ by less than largest_extent. A product of two components that underflows errs by at most 2^-1075,
-/// times a third component below 2^-975, some twenty times: far below u 2^-798. Interpolated components err by a few 2^-1074:
+/// whose coordinates differ by less than largest_extent. A product of two components that underflows errs by at most 2^-1075;
+/// times a third component, below 2^100, that is less than 2^-975, some twenty times over: far below u 2^-798. Interpolated components err by a few 2^-1074:
 /// far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes and go to the scalar path, which
 /// scales each axis by a power of two.
 inline constexpr double length_floor = 0x1p-266;

@@ -30,7 +30,9 @@ FASTCCD_INLINE Inclusion<L> projected_inclusion(const RelativeMotion<L>& r, cons
     const Vector3<L> t = kind == PairKind::vertex_face ? cross(r3, r1) : cross(r1, r3);
     const Vector3<L> s = kind == PairKind::vertex_face ? t : add(subtract(q, t), p);
 
-    const L change = broadcast<L>(8.0) * (delta + delta * delta);
+    // A little more for the roundings of this line, of three times it and of the product with the area, 5 u: for a wide
+    // neighbourhood they are more than the slack of what is added.
+    const L change = broadcast<L>(8.0 * (1.0 + 0x1p-50)) * (delta + delta * delta);
     const L per_area = change + broadcast<L>(bounds.edge_function());
     const L per_area_sum = broadcast<L>(3.0) * change + broadcast<L>(bounds.edge_function_sum());
 

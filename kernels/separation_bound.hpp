@@ -4,7 +4,7 @@
 // Notation as in error_bound.hpp: X, Y, Z are the extents of the pair, and a computed component of r_i along x errs by
 // at most rho u X at an end of the searched interval. n is whatever vector was computed, taken as exact, because every
 // vector gives a valid certificate; S = |n_x| X + |n_y| Y + |n_z| Z. Bounds are multiples of u S. S itself is computed
-// within 3 u and multiplied twice; this and terms in u^2 are covered by `slack`, since every constant is below 2^6.
+// within 3 u and multiplied twice; this and terms in u^2 are covered by `slack`, since every constant is below 2^7.
 #pragma once
 
 #include <fastccd/options.hpp>
@@ -28,7 +28,7 @@ struct SeparationBounds {
     static constexpr double u = ErrorBounds::u;
     static constexpr double slack = 2.0;
 
-    explicit constexpr SeparationBounds(double rho_) : rho{rho_} {}
+    FASTCCD_INLINE explicit constexpr SeparationBounds(double rho_) : rho{rho_} {}
 
     double rho;
 

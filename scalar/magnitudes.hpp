@@ -4,6 +4,15 @@
 // term by the extents; the certified search, which has the last word, adds the terms up: the same formulas as
 // in coplanarity.hpp, of absolute values and with every sign positive. The bounds never exceed those from
 // extents, on which the lanes' margins rest.
+//
+// With t_max != 1 (rho = 10) a component a1 of r_i at the end of the interval is (1 - t) a0 + t q, which may cancel: it errs by
+// at most u (4 |(1 - t) a0| + 3 |t q|) <= u (7 |a0| + 3 |a1|), not by a multiple of |a1|; a0 errs by u |a0|. What 7 |a0| adds to
+// a coefficient are terms of the coefficient before it. So the bounds below are relative to the largest sum of terms, m, of all
+// coefficients, and would be wrong for each by itself. With S0, S1, S2 the sums of the terms of the Bernstein coefficients
+// (inner ones divided by 2 and 3), factors err by
+//     r_i x r_j:                     2 S0,  7 S0 + 4 S1,  14 S1 + 6 S2:               at most 2 rho m,
+//     the cubic:                     3 F0,  7 F0 + 5 F1,  14 F1 + 7 F2,  21 F2 + 9 F3:  at most 3 rho m,
+// in units of u; roundings of the products themselves come on top.
 #pragma once
 
 #include <coplanarity.hpp>
@@ -33,8 +42,8 @@ inline QuadraticVector<double> cross_product_magnitude(const RelativeMotion<doub
 }
 
 /// Bound of the coefficients of one component of r_i x r_j on any part of the interval.
-/// Terms err by 2 rho + 1, sums by 2 more (the middle coefficient), the two blossom levels by 6: relative to m, the
-/// largest sum of magnitudes of the three, which also bounds the coefficients.
+/// Terms err by 2 rho + 1 (factors, product), sums by 2 more (the middle coefficient), the two blossom levels by 6: relative
+/// to m, the largest sum of magnitudes of the three, which also bounds the coefficients.
 inline double quadratic_bound(double start, double twice_middle, double end, double from_extents, const ErrorBounds& bounds)
 {
     const double m = max(start, 0.5 * twice_middle, end);

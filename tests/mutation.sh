@@ -100,7 +100,7 @@ mutant 'no margin of gaps on a part' $bounds 's/3 \* linear_on_interval\(\)/line
 mutant 'no margin of the halved cubic' $bounds 's/ \+ 12 \* \(2 \* cubic_on_interval\(\)\)//' error_bounds_test
 mutant 'no margin of halved edge functions' $bounds 's/ \+ 4 \* \(2 \* quadratic_on_interval\(\)\)//' error_bounds_test
 mutant 'no margin of halved sums' $bounds 's/ \+ 4 \* \(2 \* 4 \* quadratic_on_interval\(\)\)//' error_bounds_test
-mutant 'change of edge functions = 0' kernels/projected_inclusion.hpp 's/broadcast<L>\(8\.0\) \* \(delta/broadcast<L>(0.0) * (delta/' certificates_test same_bits_test truth_test
+mutant 'change of edge functions = 0' kernels/projected_inclusion.hpp 's/broadcast<L>\(8\.0 \* \(1\.0 \+ 0x1p-50\)\)/broadcast<L>(0.0)/' certificates_test same_bits_test truth_test
 
 # ---- Certificates of the whole interval loosened
 certificates=kernels/certificates.hpp
@@ -227,6 +227,9 @@ mutant 'environment: threads as the arena left it' scheduler/parallel_ranges.hpp
 mutant 'environment: not given back' scheduler/default_floating_point.cpp 's/_mm_setcsr\(before_\);/;/' floating_point_environment_test
 
 mutant 'tasks: those of the program begun meanwhile' scheduler/parallel_ranges.hpp 's/tbb::this_task_arena::isolate\(\[&\] \{ (tbb::parallel_for\(.*?\);) \}\);/$1/' host_tasks_test
+
+mutant 'adapters: separation to the default tolerance' kernels/include/fastccd/adapters/distance_tolerance.hpp 's/std::min\(options\.distance_tolerance, distance \/ minimum_separation\)/options.distance_tolerance/' adapters_test
+mutant 'lists grow by what is needed alone' scheduler/fastccd.cpp 's/std::max\(needed, 2 \* list\.capacity\(\)\)/needed/' api_test
 
 # ---- Boxes of indexed pairs
 boxes=scheduler/mesh_boxes.cpp
