@@ -1,4 +1,4 @@
-// The three certificates of absence on the whole interval: volume, area, length.
+// The three certificates of absence on the whole interval: cubic (volume), quadratic (projected areas), linear (lengths).
 //
 // A contact at a time s needs f(s) = 0 (coplanar), a contact in each coordinate projection, and an
 // overlap along each axis. Each is refuted by the strict sign of Bernstein coefficients beyond their

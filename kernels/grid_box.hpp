@@ -1,10 +1,10 @@
-// Boxes of moving primitives on a grid of integers: the length certificate for indexed pairs, from 32 bytes a primitive that
+// Boxes of moving primitives on a grid of integers: the linear certificate for indexed pairs, from 32 bytes a primitive that
 // many pairs share, before any vertex is fetched.
 //
 // Along each axis the mesh, over both ends of the step, spans [centre - H, centre + H], and a coordinate x lies in the cell
 //     q = floor((x - centre) * cells / H),    cells = 16000.
-// Difference, product (the factor is rounded too) and sum in that floor are rounded: in units of a cell the computed argument
-// errs by less than 2 u 2^16 < 2^-35, so x lies between q - 2^-35 and q + 1 + 2^-35. The box of a primitive at one end of the
+// The floor is taken by truncation after 2^15 is added (mesh_boxes.cpp). Difference, factor, product and that sum are rounded: in
+// units of a cell the computed argument errs by less than 2 u 2^16 < 2^-35, so x lies between q - 2^-35 and q + 1 + 2^-35. The box of a primitive at one end of the
 // step reaches from the least q to the largest q + 1 of its vertices. If, along one axis and in the same order at both ends,
 // the first box ends below where the second begins,
 //     high_a + k < low_b,    k = ceil(d * cells / H),

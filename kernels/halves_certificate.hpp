@@ -1,8 +1,8 @@
-// The volume and area certificates on both halves of the interval, by one step of de Casteljau's algorithm.
+// The cubic and quadratic certificates on both halves of the interval, by one step of de Casteljau's algorithm.
 //
 // On a half, coefficients lie closer to the function than on the whole interval, and another projection may decide than on the
-// other half: of random pairs without a certificate on the whole, one on either half dismisses 53 % (vertex-face) and 42 %
-// (edge-edge), before any root is sought. They include those on the whole interval, but for their larger margins. The certified
+// other half: of random pairs without a certificate on the whole, 53 % (vertex-face) and 42 % (edge-edge) have one on either
+// half, before any root is sought. They include those on the whole interval, but for their larger margins. The certified
 // search examines the same two halves next, so what is concluded here with a margin (ErrorBounds::halves) it concludes too.
 #pragma once
 
@@ -48,7 +48,7 @@ struct ApartOnHalves {
     LaneMask<L> first, second;
 };
 
-/// On either half by the volume certificate, or in at least one coordinate projection. `bounds` are ErrorBounds::halves().
+/// On either half by the cubic certificate, or by the quadratic one in at least one coordinate projection. `bounds` are ErrorBounds::halves().
 template <PairKind kind, class L>
 FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p,
                                                    const QuadraticVector<L>& q, const QuadraticVector<L>& t,

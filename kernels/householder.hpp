@@ -16,7 +16,7 @@ inline constexpr int quick_steps = 3;
 /// Half width of the bracket around its root on which a candidate is dismissed then, and over which one in contact is to be
 /// inside: wide against rounding, narrow enough that edge functions rarely vanish within it.
 inline constexpr double quick_bracket = 0x1p-20;
-/// Steps of the others, which keep a bracket: after six, a few more are left to the certified search.
+/// Steps of the others, which keep a bracket. With six, a few more roots were left to the certified search.
 inline constexpr int most_steps = 8;
 /// Half width of the bracket around their roots: small against any curvature that matters, large against E_tol.
 inline constexpr double fine_bracket = 0x1p-16;

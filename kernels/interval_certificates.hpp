@@ -31,7 +31,7 @@ FASTCCD_INLINE StrictSign<L> strict_sign(const PairCoefficients::EdgeFunction& e
     return {less(broadcast<L>(e.bound), smallest(q)), less(largest(q), broadcast<L>(-e.bound))};
 }
 
-/// The volume test on [a, b].
+/// The cubic certificate on [a, b].
 template <class L>
 FASTCCD_INLINE LaneMask<L> never_coplanar(const PairCoefficients& pair, L a, L b)
 {
@@ -39,7 +39,7 @@ FASTCCD_INLINE LaneMask<L> never_coplanar(const PairCoefficients& pair, L a, L b
     return less(broadcast<L>(pair.cubic_bound), smallest(f)) | less(largest(f), broadcast<L>(-pair.cubic_bound));
 }
 
-/// The area test on [a, b] in the projection along one axis: strict signs decide as in apart_in_projection.
+/// The quadratic certificate on [a, b] in the projection along one axis: strict signs decide as in apart_in_projection.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> apart_along(const PairCoefficients::EdgeFunction* edges, L a, L b)
 {
@@ -52,7 +52,7 @@ FASTCCD_INLINE LaneMask<L> apart_along(const PairCoefficients::EdgeFunction* edg
     }
 }
 
-/// The length test on [a, b].
+/// The linear certificate on [a, b].
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> separated_on(const PairCoefficients& pair, L a, L b)
 {

@@ -85,7 +85,7 @@ struct TileScratch {
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
     double earliest;                           ///< From the lanes: none of their times is before this.
-    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. What lanes report is proven.
+    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven; without a minimum separation lanes report no such.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.
@@ -122,9 +122,8 @@ struct TileRequest {
 
 struct KernelTable {
     Isa isa;
-    unsigned lanes;
-    /// Fills time, roots, reported, is_undecided and earliest of the scratch. What the lanes found of an undecided pair is to
-    /// be overwritten.
+    /// Fills time, roots, reported, is_undecided and earliest of the scratch, and adds to is_unproven. What the lanes found of an
+    /// undecided pair is to be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
     /// For the certified search of one pair; null if intervals are better looked at one by one.
     IntervalKernel intervals;

@@ -2,8 +2,8 @@
 //
 // Every kernel is one template on a lane type L: `double` (one pair) or `xsimd::batch<double, A>`
 // (several pairs side by side). Only + - * / and square root, all correctly rounded by IEEE 754,
-// comparisons, and the min / max below may decide a result: that is what makes the results the
-// same bits for every L. Nothing is contracted (the build switches that off): no product loses its rounding.
+// comparisons, operations on the sign bit, and the min / max below may decide a result: that is what makes
+// the results the same bits for every L. Nothing is contracted (the build switches that off): no product loses its rounding.
 //
 // All kernels live in a namespace of their own per instruction set: two translation units compiled
 // with different instruction sets must never emit the same inline function, because the linker

@@ -23,7 +23,7 @@ struct PairCoefficients {
     double cubic[4], cubic_bound;   ///< Of coplanarity.
     EdgeFunction edges[3][4];       ///< By axis of projection: p, q, t, and for two edges s.
     double edge, speed;             ///< C1 and C2 of eq. 6.
-    double area_rounding;           ///< Of the area test.
+    double area_rounding;           ///< Of area inclusion (area_inclusion.hpp).
 };
 
 /// Bit i: the pair is certainly apart on [starts[i], ends[i]], one interval per lane. `by_area`: eq. 7 counts, too.

@@ -9,9 +9,12 @@
 
 namespace fastccd {
 
+/// Doubles a vertex in the records of a MovingMesh: x y z at t = 0, x y z at t = 1, two unused.
+inline constexpr std::size_t vertex_record_size = 8;
+
 /// Pairs of indices into a MovingMesh.
 struct IndexedSource {
-    const double* records;           ///< 8 doubles a vertex: x y z at t = 0, x y z at t = 1, two unused.
+    const double* records;           ///< vertex_record_size doubles a vertex.
     const std::int32_t* pairs;       ///< 2 a pair: vertex and face, or two edges.
     const std::int32_t* primitives;  ///< Vertices of the faces or edges.
     std::ptrdiff_t row_stride, column_stride;

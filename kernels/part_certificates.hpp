@@ -9,7 +9,7 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// By volume, or by area in at least one coordinate projection.
+/// Cubic, or quadratic in at least one coordinate projection.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> part_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, const CertificateBounds& bounds)
 {
@@ -21,7 +21,7 @@ FASTCCD_INLINE LaneMask<L> part_certificate(const RelativeMotion<L>& r, const Sc
     return cubic_certificate(cubic, scale.volume, bounds) | apart_in_projections;
 }
 
-/// By length: separated along an axis. A gap is the least of several linear functions of time, so it is nowhere less than at an end.
+/// Linear: separated along an axis. A gap is the least of several linear functions of time, so it is nowhere less than at an end.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> separated_on_part(const RelativeMotion<L>& r, const Extents<L>& extents, const CertificateBounds& bounds)
 {

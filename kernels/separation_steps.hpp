@@ -5,8 +5,8 @@
 // the primitives approach. It begins with a look at the middle of the interval, whose reach is all of it for most
 // pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they turn, a fixed
 // vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
-// looks ahead, and tries the vectors at both ends of an interval together. It looks ahead to where the last two distances
-// let expect contact (the secant method), and, after some looks, as far as has gone well.
+// looks ahead, and tries the vectors at both ends of an interval together. It looks ahead to where the secant through the
+// last two distances reaches d, and, after some looks, as far as has gone well.
 //
 // This is the definition of the result. Every step is a function of the pair alone, in the same operations in every lane
 // type, so lanes and the scalar search come to the same time, bit for bit.

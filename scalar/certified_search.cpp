@@ -6,22 +6,15 @@
 // that are apart by more than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound.
 #include <certified_search.hpp>
 
-#include <cmath>
 #include <limits>
 
 #include <contact_roots.hpp>
 #include <pair_polynomials.hpp>
+#include <scaling.hpp>
 
 namespace fastccd::scalar {
 
 namespace {
-
-bool finite(const double* coordinates)
-{
-    for (int c = 0; c < 24; ++c)
-        if (!std::isfinite(coordinates[c])) return false;
-    return true;
-}
 
 template <PairKind kind>
 SearchResult search(const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
@@ -44,7 +37,7 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
 SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
 {
-    if (!finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
+    if (!all_finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
     return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, lanes)
                                          : search<PairKind::edge_edge>(coordinates, parameters, lanes);
 }

@@ -10,14 +10,15 @@
 namespace fastccd::scalar {
 
 /// Hard cap on the intervals halved for one pair; on reaching it those still waiting, some hundred at most, are examined
-/// once, and the first without a certificate is the answer: contact, with the lower bound reached. Far above what any pair of the public data needs.
+/// once, and the first without a certificate is the answer: contact, with the lower bound reached. Far above what any pair of the
+/// public data needs. Counting roots has as many again for itself.
 inline constexpr unsigned most_intervals = 4096;
 
 /// What is certain about a contact that is reported.
 enum class Proof : std::uint8_t {
     none,    ///< Contact is not excluded, to within rounding.
     nearby,  ///< There is contact in a wider interval around toi than a leaf.
-    leaf,    ///< There is contact in the leaf that begins at toi.
+    leaf,    ///< There is contact in the leaf that toi lies in; with a minimum separation, the pair comes as close soon after toi.
 };
 
 struct SearchResult {

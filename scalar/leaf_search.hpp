@@ -55,11 +55,12 @@ public:
         return part ? part->a : none;
     }
 
-    /// After first_contact() has found something at s: whether there is contact for certain, in the leaf of the answer or
+    /// After first_contact() has found something at s: whether there is contact for certain, in the leaf that s lies in or
     /// in some interval around s. A root may lie too close to the leaf's end, and inclusion may end in a wide leaf.
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
-        if (contact_proven(leaf_of_answer)) return Proof::leaf;
+        // Out of intervals, contact may have been found in one that is wider than a leaf.
+        if (contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
         for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
             const Interval around{std::max(s - reach, 0.0), std::min(s + reach, 1.0)};
             if (!pair.included(around)) return Proof::none;  // nor, but for rounding, in anything wider
@@ -72,8 +73,8 @@ public:
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;
-    /// Parts of a leaf are halved to this width relative to their time, where a time still has a few
-    /// digits to spare, or, next to time 0, to this absolute one.
+    /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or, next to time 0, to
+    /// this absolute one.
     static constexpr double finest_relative = 0x1p-52;
     static constexpr double finest_at_zero = 0x1p-100;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <error_bound.hpp>
+#include <fastccd/pair_view.hpp>
 
 namespace fastccd::scalar {
 
@@ -28,11 +29,16 @@ bool all_unscaled(const Extents<double>& step, const Extents<double>& searched)
 
 }  // namespace
 
+bool all_finite(const double* coordinates)
+{
+    return std::all_of(coordinates, coordinates + pair_coordinates, [](double x) { return std::isfinite(x); });
+}
+
 AxisDifferences::AxisDifferences(const double* coordinates, int axis)
 {
     for (int end = 0; end < 2; ++end) {
         const auto x = [&](int point) { return coordinates[12 * end + 3 * point + axis]; };
-        // Halved where a difference could overflow; exact, but for coordinates that then have others 2^2000 times as large beside
+        // A sixteenth where a difference could overflow; exact, but for coordinates that then have others 2^2000 times as large beside
         // them. Each end by itself: at the other one all may be tiny.
         const double coordinate = std::max({std::abs(x(0)), std::abs(x(1)), std::abs(x(2)), std::abs(x(3))});
         shift[end] = coordinate > 0x1p1021 ? 4 : 0;
@@ -71,7 +77,7 @@ RelativeMotion<double> scaled_relative_motion(const double* coordinates, double 
         std::swap(exchanged[12 + k], exchanged[12 + 3 * origin + k]);
     }
 
-    // As for most pairs. Coordinates beyond 2^1021 have differences of 0 or far too large ones, halved or not.
+    // As for most pairs. Coordinates beyond 2^1021 have differences of 0 or far too large ones, a sixteenth or not.
     const Extents<double> step = extents(relative_motion<double>(exchanged, 1, 1.0));
     const RelativeMotion<double> motion = relative_motion<double>(exchanged, 1, t_max);
     if (all_unscaled(step, t_max == 1.0 ? step : extents(motion))) return motion;

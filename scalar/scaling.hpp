@@ -11,6 +11,9 @@ namespace fastccd::scalar {
 
 using namespace FASTCCD_KERNEL_NAMESPACE;
 
+/// True if none of the coordinates of a pair (24) is NaN or infinite.
+bool all_finite(const double* coordinates);
+
 /// Motion of a pair of finite coordinates (24, in the order of PairView) relative to point `origin`, which is
 /// exchanged with x0; axes scaled where needed.
 RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin = 0);

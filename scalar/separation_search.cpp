@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include <fastccd/pair_view.hpp>
 #include <scaling.hpp>
 #include <separation_steps.hpp>
 
@@ -14,11 +13,6 @@ namespace fastccd::scalar {
 namespace {
 
 using namespace FASTCCD_KERNEL_NAMESPACE;
-
-bool finite(const double* coordinates)
-{
-    return std::all_of(coordinates, coordinates + pair_coordinates, [](double x) { return std::isfinite(x); });
-}
 
 /// d and what follows from it, in other units. What allows for rounding is formed anew: of a subnormal d it was rounded itself.
 SeparationParameters in_units(const SeparationParameters& s, int exponent)
@@ -79,7 +73,7 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
 
 SearchResult separation_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, double limit)
 {
-    if (!finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
+    if (!all_finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
     return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, limit)
                                          : search<PairKind::edge_edge>(coordinates, parameters, limit);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -172,6 +173,7 @@ std::span<const EdgeEdge> edge_edge_pairs(const std::int32_t* pairs, std::size_t
 int single(PairKind kind, const double* x0, const double* x1, const fastccd_options* given, double* toi)
 {
     if (x0 == nullptr || x1 == nullptr || toi == nullptr) return FASTCCD_BAD_ARGUMENT;
+    *toi = std::numeric_limits<double>::quiet_NaN();
     Options options;
     if (const int error = to_cpp(given, options); error != FASTCCD_OK) return error;
     Point start[4], end[4];

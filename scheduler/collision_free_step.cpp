@@ -45,7 +45,6 @@ std::size_t offer_all(const Job& job, std::size_t offset, SharedBest& best)
 
 Status find_step(const CheckedSource& vertex_face, const CheckedSource& edge_edge, const Options& options, CollisionFreeStep& step)
 {
-    step = {};
     Job faces = no_job(PairKind::vertex_face), edges = no_job(PairKind::edge_edge);
     if (const Status status = prepare(faces.kind, vertex_face, options, false, faces); !status.ok()) return status;
     step.kind = PairKind::edge_edge;
@@ -72,12 +71,14 @@ Status find_step(const CheckedSource& vertex_face, const CheckedSource& edge_edg
 Status collision_free_step(const MovingMesh& mesh, std::span<const VertexFace> vertex_face, std::span<const EdgeEdge> edge_edge,
                            const Options& options, CollisionFreeStep& step) noexcept
 {
+    step = {};  // whatever goes wrong below, a check of the indices included
     return guarded([&] { return find_step(indexed(mesh, vertex_face), indexed(mesh, edge_edge), options, step); });
 }
 
 Status collision_free_step(const PairView& vertex_face, const PairView& edge_edge, const Options& options,
                            CollisionFreeStep& step) noexcept
 {
+    step = {};
     return guarded([&] { return find_step(packed(vertex_face), packed(edge_edge), options, step); });
 }
 

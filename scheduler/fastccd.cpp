@@ -1,6 +1,7 @@
 // The public entry points: dense, compact and earliest answers for packed and for indexed pairs.
 #include <fastccd/fastccd.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -44,6 +45,14 @@ struct TileShare {
     std::size_t invalid_begin = 0, invalid_end = 0;
 };
 
+/// Room for `more` at the end, growing as push_back does: a list that many calls append to is not moved by each.
+template <class T>
+void reserve_more(std::vector<T>& list, std::size_t more)
+{
+    const std::size_t needed = list.size() + more;
+    if (needed > list.capacity()) list.reserve(std::max(needed, 2 * list.capacity()));
+}
+
 Status compact(PairKind kind, const CheckedSource& pairs, const Options& options, std::vector<Contact>& contacts,
                std::vector<std::size_t>* invalid, Summary* summary)
 {
@@ -70,8 +79,8 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
         });
 
     // Both before either is written to: on want of memory the caller's lists stay as they were.
-    contacts.reserve(contacts.size() + totals.contacts);
-    if (invalid != nullptr) invalid->reserve(invalid->size() + totals.invalid);
+    reserve_more(contacts, totals.contacts);
+    if (invalid != nullptr) reserve_more(*invalid, totals.invalid);
     for (const TileShare& share : shares) {
         const auto at = [](const auto& list, std::size_t i) { return list.begin() + static_cast<std::ptrdiff_t>(i); };
         contacts.insert(contacts.end(), at(share.worker->contacts, share.contacts_begin),

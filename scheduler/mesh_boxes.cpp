@@ -12,23 +12,21 @@ namespace fastccd {
 
 namespace {
 
-constexpr std::size_t record_doubles = 8;
-
 /// Smallest and largest of each element of the records (x y z at both ends of the step, two unused).
 struct Bounds {
-    double low[record_doubles], high[record_doubles];
+    double low[vertex_record_size], high[vertex_record_size];
     double not_finite = 0.0;  ///< NaN as soon as one element is not finite.
 
     Bounds()
     {
-        std::fill_n(low, record_doubles, std::numeric_limits<double>::infinity());
-        std::fill_n(high, record_doubles, -std::numeric_limits<double>::infinity());
+        std::fill_n(low, vertex_record_size, std::numeric_limits<double>::infinity());
+        std::fill_n(high, vertex_record_size, -std::numeric_limits<double>::infinity());
     }
 
     void include(const double* record)
     {
         double sum = 0.0;
-        for (std::size_t k = 0; k < record_doubles; ++k) {
+        for (std::size_t k = 0; k < vertex_record_size; ++k) {
             low[k] = record[k] < low[k] ? record[k] : low[k];
             high[k] = record[k] > high[k] ? record[k] : high[k];
             sum += record[k] - record[k];
@@ -38,7 +36,7 @@ struct Bounds {
 
     void include(const Bounds& other)
     {
-        for (std::size_t k = 0; k < record_doubles; ++k) {
+        for (std::size_t k = 0; k < vertex_record_size; ++k) {
             low[k] = std::min(low[k], other.low[k]);
             high[k] = std::max(high[k], other.high[k]);
         }
@@ -61,7 +59,7 @@ Bounds bounds_of(const IndexedSource& source)
     return reduce_ranges(
         source.vertex_count, grain, Bounds{},
         [&](const Range& range, Bounds bounds) {
-            for (std::size_t i = range.begin(); i != range.end(); ++i) bounds.include(source.records + record_doubles * i);
+            for (std::size_t i = range.begin(); i != range.end(); ++i) bounds.include(source.records + vertex_record_size * i);
             return bounds;
         },
         [](Bounds a, const Bounds& b) {
@@ -165,7 +163,7 @@ MeshBoxes::Set* MeshBoxes::make(PairKind kind, const IndexedSource& source)
     if (set->memory == nullptr || (!faces && vertices_of_edges == nullptr)) return nullptr;
     GridBox* const of_vertex = faces ? boxes_in(set->memory) : boxes_in(vertices_of_edges);
     GridBox* const of_primitive = boxes_in(set->memory) + (faces ? vertices : 0);
-    in_parallel(vertices, [&](std::size_t i) { put_vertex(set->grid, source.records + record_doubles * i, of_vertex[i]); });
+    in_parallel(vertices, [&](std::size_t i) { put_vertex(set->grid, source.records + vertex_record_size * i, of_vertex[i]); });
     in_parallel(primitives, [&](std::size_t i) {
         const std::int32_t* const row = source.primitives + static_cast<std::ptrdiff_t>(i) * source.row_stride;
         const auto corner = [&](std::ptrdiff_t k) -> const GridBox& { return of_vertex[row[k * source.column_stride]]; };

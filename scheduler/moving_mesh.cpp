@@ -6,6 +6,7 @@
 #include <guarded.hpp>
 #include <index_check.hpp>
 #include <mesh_boxes.hpp>
+#include <pair_source.hpp>
 #include <parallel_ranges.hpp>
 
 namespace fastccd {
@@ -26,14 +27,12 @@ Status check_rows(const IndexView& rows, int columns, std::size_t vertices)
     return {};
 }
 
-constexpr std::size_t record_doubles = 8;
-
 void copy_positions(const PositionView& start, const PositionView& end, double* records)
 {
     constexpr std::size_t grain = 4096;  // 256 KiB of records a task
     for_each_range(start.size(), grain, [&](const Range& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            double* const record = records + record_doubles * i;
+            double* const record = records + vertex_record_size * i;
             for (int axis = 0; axis < 3; ++axis) {
                 record[axis] = start(i, axis);
                 record[3 + axis] = end(i, axis);
@@ -55,7 +54,7 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_);
     if (!status_.ok() || vertex_count_ == 0) return;
 
-    if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / record_doubles) records_ = allocate_aligned(vertex_count_ * record_doubles);
+    if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / vertex_record_size) records_ = allocate_aligned(vertex_count_ * vertex_record_size);
     boxes_.reset(new (std::nothrow) MeshBoxes);
     status_ = records_ == nullptr || boxes_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
         copy_positions(start, end, records_.get());

@@ -14,12 +14,12 @@
 
 namespace fastccd {
 
-/// Memory of one worker during one call: under 1 MiB, whatever the number of pairs.
+/// Memory of one worker during one call: under 512 KiB, whatever the number of pairs.
 struct TileWorker {
     TileScratch scratch;
     Summary totals;
 
-    /// Kernels write the scratch before they read it, but for this.
+    /// What else kernels read before they write it, past the end of queues and results, decides nothing.
     TileWorker() { scratch.dense = false; }
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);

@@ -42,8 +42,8 @@ void gather_pair(PairKind kind, const IndexedSource& source, std::size_t i, doub
         FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::edge_edge, false>(source, source.pairs + 2 * i, vertex);
     for (std::size_t point = 0; point < 4; ++point)
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            coordinates[3 * point + axis] = source.records[8 * vertex[point] + axis];
-            coordinates[12 + 3 * point + axis] = source.records[8 * vertex[point] + 3 + axis];
+            coordinates[3 * point + axis] = source.records[vertex_record_size * vertex[point] + axis];
+            coordinates[12 + 3 * point + axis] = source.records[vertex_record_size * vertex[point] + 3 + axis];
         }
 }
 
@@ -137,7 +137,8 @@ scalar::SearchResult answer_pair(const Job& job, const double* coordinates, doub
         return scalar::separation_search(job.kind, coordinates, job.parameters, time_limit(cutoff));
     const IntervalKernel* const lanes = job.kernels == nullptr ? nullptr : &job.kernels->intervals;
     scalar::SearchResult found = scalar::certified_search(job.kind, coordinates, job.parameters, lanes);
-    // Contact proven in a leaf has a certain sign at the leaf's start, so even in the first leaf toi is not 0.
+    // What is proven in a leaf is located within the tolerance already. Its cubic has a certain sign at the leaf's start, so even in
+    // the first leaf toi is not 0.
     if (job.exact && std::isfinite(found.toi) && found.proof != scalar::Proof::leaf) settle(job, coordinates, found);
     return found;
 }

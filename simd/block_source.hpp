@@ -82,8 +82,6 @@ FASTCCD_INLINE bool rows_are_contiguous(const IndexedSource& source)
     return source.column_stride == 1 && source.row_stride == (kind == PairKind::vertex_face ? 3 : 2);
 }
 
-inline constexpr std::size_t vertex_record_size = 8;
-
 /// Finds the vertex records of 8 of the pairs at `pairs`, and asks for them.
 template <PairKind kind, bool contiguous>
 FASTCCD_INLINE void resolve_pairs(const IndexedSource& source, const std::int32_t* pairs, const std::uint16_t* listed,
@@ -302,12 +300,13 @@ private:
     FASTCCD_INLINE void pack(std::size_t i, double* block)
     {
         const PairView& pairs = *tile_.source->view;
-        const std::size_t first = tile_.first + i, offset = first * pair_coordinates;
+        const std::size_t first = tile_.first + i;
         const std::size_t count = size_ - i < block_pairs ? size_ - i : block_pairs;
-        const bool wide = pairs.scalar() == PairView::Scalar::float64;
-        const auto* const doubles = static_cast<const double*>(pairs.data()) + offset;
-        const auto* const floats = static_cast<const float*>(pairs.data()) + offset;
-        if (pairs.layout() == PairView::Layout::strided)
+        const bool wide = pairs.scalar() == PairView::Scalar::float64, strided = pairs.layout() == PairView::Layout::strided;
+        const std::size_t offset = strided ? 0 : first * pair_coordinates;
+        const auto* const doubles = wide ? static_cast<const double*>(pairs.data()) + offset : nullptr;
+        const auto* const floats = wide ? nullptr : static_cast<const float*>(pairs.data()) + offset;
+        if (strided)
             prefetcher_.at_strided_block(first);
         else
             prefetcher_.at_pairs(wide ? static_cast<const void*>(doubles) : floats, block_pairs);

@@ -57,7 +57,6 @@ constexpr IntervalKernel interval_kernel()
 }  // namespace
 
 extern const KernelTable table;
-const KernelTable table{Isa::FASTCCD_KERNEL_ISA, Lane<KernelLane>::width, run_kernel_tile,
-                        interval_kernel<KernelLane>()};
+const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, interval_kernel<KernelLane>()};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

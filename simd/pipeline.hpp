@@ -1,6 +1,6 @@
 // The stages of the narrow phase over one tile:
 //
-//     block -> length, volume certificates -> [screened] -> volume, area certificates -> [candidates] -> sign-change intervals,
+//     block -> linear, cubic certificates -> [screened] -> cubic, quadratic certificates -> [candidates] -> sign-change intervals,
 //                     |                                     on both halves                        Householder steps, leaf,
 //                     v                                           |                               inclusion
 //                   apart                                         v                                |             |
@@ -71,13 +71,13 @@ private:
     {
     }
 
-    /// What the length and volume certificates say of a batch.
+    /// What the linear and cubic certificates say of a batch.
     struct Screening {
         unsigned kept;    ///< Lanes to look into.
         unsigned beyond;  ///< Lanes whose coordinates lanes do not decide.
     };
 
-    /// Length and volume certificates on the whole interval. Fills in the record but for `pair`.
+    /// Linear and cubic certificates on the whole interval. Fills in the record but for `pair`.
     FASTCCD_INLINE Screening screen(const double* coordinates, PairRecord<L>& record)
     {
         record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
@@ -151,7 +151,7 @@ private:
         scratch.dense = 3 * kept >= count;
     }
 
-    /// Certificates that need more than screening has computed. Those on both halves include the area certificate on the whole.
+    /// Certificates that need more than screening has computed. Those on both halves include the quadratic one on the whole.
     FASTCCD_INLINE void examine(PairRecord<L>& record, unsigned lanes)
     {
         if (cutoff < 1.0) {
@@ -198,8 +198,8 @@ private:
         }
     }
 
-    /// Certificates on [0, cutoff] and one leaf more: the certified search finds every leaf there apart, so toi is greater than
-    /// the cutoff. Only the end of the motion moves.
+    /// Certificates on [0, cutoff] and two leaves more, the rest of the one that the cutoff lies in and room for the rounding of this
+    /// sum: the certified search finds every leaf there apart, so toi is greater than the cutoff. Only the end of the motion moves.
     FASTCCD_INLINE LaneMask<L> apart_until_cutoff(const PairRecord<L>& record)
     {
         const L end = broadcast<L>(cutoff + 2 * parameters.leaf_width < 1.0 ? cutoff + 2 * parameters.leaf_width : 1.0);

@@ -106,6 +106,26 @@ TEST(Api, NoPairs)
     EXPECT_TRUE(contacts.empty());
 }
 
+TEST(Api, ListsThatManyCallsAppendToAreSeldomMoved)
+{
+    const PairBuffer touching{1};  // all points in one place
+    PairBuffer bad{1};
+    bad.at(0, 2) = std::numeric_limits<double>::infinity();
+    std::vector<Contact> contacts;
+    std::vector<std::size_t> invalid;
+    std::size_t moves = 0;
+    for (int call = 0; call < 256; ++call) {
+        const Contact* const before = contacts.data();
+        const std::size_t* const invalid_before = invalid.data();
+        ASSERT_TRUE(find_contacts(PairKind::edge_edge, touching.view(), {}, contacts, &invalid).ok());
+        ASSERT_TRUE(find_contacts(PairKind::edge_edge, bad.view(), {}, contacts, &invalid).ok());
+        moves += (contacts.data() != before ? 1 : 0) + (invalid.data() != invalid_before ? 1 : 0);
+    }
+    EXPECT_EQ(contacts.size(), 256u);
+    EXPECT_EQ(invalid.size(), 256u);
+    EXPECT_LE(moves, 24u);
+}
+
 TEST(Api, InvalidPairsAreNamedAndTheOthersAnswered)
 {
     const auto clean = uniform_pairs(2000);

@@ -68,6 +68,10 @@ static void test_single_pairs(void)
     EXPECT(fastccd_edge_edge_toi(start + 6, end + 6, NULL, &toi) == FASTCCD_OK && near(toi, 0.25));
     options.t_max = 0.0;
     EXPECT(fastccd_edge_edge_toi(start, end, &options, &toi) == FASTCCD_BAD_T_MAX && isnan(toi));
+    fastccd_options_init(&options, sizeof options);
+    options.isa = 77;
+    toi = 7.0;
+    EXPECT(fastccd_edge_edge_toi(start, end, &options, &toi) == FASTCCD_ISA_UNAVAILABLE && isnan(toi));
     memcpy(bad, start, sizeof bad);
     bad[4] = NAN;
     EXPECT(fastccd_vertex_face_toi(bad, end, NULL, &toi) == FASTCCD_OK && isnan(toi));

@@ -42,7 +42,8 @@ template <class Matrix>
     return PositionView::xyz(m.data(), m.data() + m.colStride(), m.data() + 2 * m.colStride(), m.rowStride(), rows);
 }
 
-/// Faces, n x 3, or edges, n x 2, of int32, in either storage order.
+/// Faces, n x 3, or edges, n x 2, of int32, in either storage order. A matrix with another number of columns gives a view
+/// without data: MovingMesh reports wrong_size.
 template <class Matrix>
 [[nodiscard]] IndexView faces(const Eigen::DenseBase<Matrix>& matrix)
 {

@@ -4,8 +4,9 @@
  * set and thread count. Arrays are contiguous, in C order ("rows" below), and belong to the caller; nothing is kept
  * after a call. All functions may be called from any number of threads at once, and print nothing.
  *
- * Every function that can fail returns an error, FASTCCD_OK if there is none; fastccd_message() says it in words. Pointers
- * marked "or NULL" may be NULL.
+ * Every function that can fail returns an error, FASTCCD_OK if there is none; fastccd_message() says it in words. On an
+ * error outputs are as they were before, except where a function says otherwise. Pointers marked "or NULL" may be NULL; so may
+ * arrays without elements.
  *
  * Structs begin with `size`, sizeof of the struct as the caller knows it. Later versions only append fields; those that
  * the caller does not know have their defaults, so that programs and libraries of different age understand each other.
@@ -33,7 +34,7 @@ enum fastccd_error {
     FASTCCD_BAD_ISA_ENVIRONMENT = 6, /* FASTCCD_ISA names no instruction set, or one that is unavailable */
     FASTCCD_INDEX_OUT_OF_RANGE = 7,  /* see fastccd_fault */
     FASTCCD_INVALID_PAIR = 8,        /* a NaN or an infinity in a pair, in a call that cannot leave it out; see fastccd_fault */
-    FASTCCD_OUT_OF_MEMORY = 9,       /* or the system refused a thread; outputs are unspecified */
+    FASTCCD_OUT_OF_MEMORY = 9,       /* or the system refused a thread; what `toi` and `roots` hold is unspecified */
     FASTCCD_BAD_MINIMUM_SEPARATION = 10, /* minimum_separation is negative, infinite or not a number */
     FASTCCD_BAD_DISTANCE_TOLERANCE = 11, /* distance_tolerance is negative, infinite or not a number */
     FASTCCD_EXACT_SEPARATION = 12,       /* `exact` together with a minimum separation */
@@ -83,7 +84,7 @@ typedef struct fastccd_contact {
     size_t pair;    /* index of the pair in the input */
     double toi;     /* lower bound of its first time of contact */
     int32_t proven; /* 1: there is contact, certainly; 0: contact is not excluded, to within rounding */
-    int32_t at_start; /* 1: within the minimum separation, if there is one, at t = 0 already */
+    int32_t at_start; /* 1: with a minimum separation: not certainly farther apart than that at t = 0 */
 } fastccd_contact;
 
 /* Set `size` before the call. */
@@ -94,7 +95,7 @@ typedef struct fastccd_summary {
     double earliest_toi;  /* INFINITY: none */
     int32_t isa;          /* kernels that ran */
     int32_t reserved;
-    size_t at_start;      /* contacts within the minimum separation, if there is one, at t = 0 already */
+    size_t at_start;      /* contacts with at_start, see fastccd_contact */
 } fastccd_summary;
 
 /* Set `size` before the call. */
@@ -130,7 +131,8 @@ FASTCCD_API int fastccd_best_isa(void);
 FASTCCD_API void fastccd_options_init(fastccd_options* options, size_t size);
 
 /* One pair: four points at t = 0 and at t = 1, x y z each. *toi: lower bound of the first time of contact in [0, t_max];
- * INFINITY: certainly apart; NAN: a coordinate is NaN or infinite. No allocation, no threads. `options`: or NULL. */
+ * INFINITY: certainly apart; NAN: a coordinate is NaN or infinite, or there is an error. No threads, and no allocation unless
+ * `exact`. `options`: or NULL. */
 FASTCCD_API int fastccd_vertex_face_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
 FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
 
@@ -140,7 +142,8 @@ FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], 
 FASTCCD_API int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                              double* toi, uint8_t* roots, fastccd_summary* summary);
 /* The pairs in contact, in pair order: the first `capacity` of them into `contacts`, their number into *found (which may
- * be more). `contacts` may be NULL if capacity is 0. */
+ * be more). `contacts` may be NULL if capacity is 0. Pairs with a NaN or an infinity are no contacts but counted in
+ * summary->invalid; fastccd_pairs_time_of_impact() tells which they are. */
 FASTCCD_API int fastccd_pairs_find_contacts(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                             fastccd_contact* contacts, size_t capacity, size_t* found, fastccd_summary* summary);
 

@@ -2,15 +2,17 @@
 // edge-edge pairs in linear motion.
 //
 // Promise, for every pair with finite coordinates, rounding included: no contact in [0, t_max] is
-// missed; `toi` is never after the exact first contact; a reported pair is that close (README); a
-// pair certifiably apart at t = 0 gets toi > 0; the same bits on every instruction set, layout and
+// missed; `toi` is never after the exact first contact; at `toi` a reported pair is within the distance given in the
+// README (Accuracy); a pair certifiably apart at t = 0 gets toi > 0; the same bits on every instruction set, layout and
 // thread count; bounded work per pair. A pair with a NaN or an infinity gets toi = NaN, the others
 // are answered.
 //
-// All functions may be called from any number of threads at once, keep no state, run in the caller's oneTBB arena,
+// All functions may be called from any number of threads at once, also with one MovingMesh, run in the caller's oneTBB arena,
 // throw nothing and print nothing: what goes wrong is in the Status. Times are in units of the step, coordinates in
-// any unit. Spans and views must stay valid and unchanged during the call. The caller's floating-point environment (direction
-// of rounding, subnormal numbers flushed, exceptions trapped) changes no answer, and is the same after the call.
+// any unit. Spans and views must stay valid and unchanged during the call, and outputs apart from inputs; none or null for no
+// pairs is no error. On an error outputs are as they were before, except where a function says otherwise, and `toi` and `roots`
+// on Error::out_of_memory. The caller's floating-point environment (direction of rounding, subnormal numbers flushed, exceptions
+// trapped) changes no answer, and is the same after the call.
 #pragma once
 
 #include <cstddef>
@@ -45,7 +47,8 @@ FASTCCD_API Status time_of_impact(PairKind kind, const PairView& pairs, const Op
                                   Summary* summary = nullptr, std::span<std::uint8_t> roots = {}) noexcept;
 
 /// Appends every pair in contact to `contacts`, in pair order, and the index of every invalid pair
-/// to `invalid` when given; on an error, nothing. O(pairs); memory for twice what is appended.
+/// to `invalid` when given; on an error, nothing. O(pairs) over many calls with the same vectors, too; memory for twice
+/// what is appended, besides the vectors' own growth.
 FASTCCD_API Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
                                  std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr) noexcept;
 
@@ -93,7 +96,7 @@ struct CollisionFreeStep {
 ///
 /// An invalid pair allows no step: unless a pair before it is in contact at time 0, the error is invalid_pair with that
 /// pair. Whenever there is an error of a pair, or an index out of range, `step.kind` tells which candidates `Status::pair`
-/// counts; the step is 0 then, as for every error.
+/// counts; the step is 0 then, as for every error. Without candidates it is t_max.
 FASTCCD_API Status collision_free_step(const MovingMesh& mesh, std::span<const VertexFace> vertex_face,
                                        std::span<const EdgeEdge> edge_edge, const Options& options,
                                        CollisionFreeStep& step) noexcept;

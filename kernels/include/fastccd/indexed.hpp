@@ -36,12 +36,14 @@ public:
     template <class T>
     static PositionView rows(const T* data, std::size_t n)
     {
+        if (data == nullptr) return {data, data, data, 3, n};
         return {data, data + 1, data + 2, 3, n};
     }
     /// n x 3, all x, then all y, then all z.
     template <class T>
     static PositionView columns(const T* data, std::size_t n)
     {
+        if (data == nullptr) return {data, data, data, 1, n};
         return {data, data + n, data + 2 * n, 1, n};
     }
     /// Vertex i at x[i * stride], y[i * stride], z[i * stride]; stride in elements.
@@ -111,9 +113,10 @@ public:
         return *this;
     }
     /// Positions at t = 0 and t = 1 of the same vertices; faces n x 3 and edges n x 2, either may be empty.
-    /// status() tells what is wrong, if anything: wrong_size for positions of different size, missing data or a stride of 0,
-    /// index_out_of_range with the row at fault as `pair` for faces, then edges, out_of_memory. Calls that are given
-    /// a mesh with an error return that error. O(vertices + faces + edges), positions on all threads of the arena.
+    /// status() tells what is wrong, if anything: wrong_size for positions of different size, missing data or indices with a
+    /// stride of 0 (and for a mesh made by default), index_out_of_range with the row at fault as `pair` for faces, then edges,
+    /// out_of_memory. Calls that are given a mesh with an error return that error. O(vertices + faces + edges), positions on all
+    /// threads of the arena.
     FASTCCD_API MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges) noexcept;
 
     [[nodiscard]] Status status() const noexcept { return status_; }

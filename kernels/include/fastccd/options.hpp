@@ -26,8 +26,9 @@ enum class Isa : std::uint8_t {
 };
 
 struct Options {
-    /// E_tol: width of the time interval, in units of the step (t in [0, 1]), within which
-    /// the first contact is located. Positive and finite; values below 2^-50 act as 2^-50.
+    /// E_tol: width of the time interval, in units of the step (t in [0, 1]), within which the first contact is located if
+    /// it is a regular one, at which the primitives cross beyond rounding. Where they only touch, toi may be earlier, by as long
+    /// as rounding cannot tell whether they do (README, Accuracy). Positive and finite; values below 2^-50 act as 2^-50.
     double tolerance = 1e-9;
     /// Contact is searched in [0, t_max], 0 < t_max <= 1.
     double t_max = 1.0;
@@ -37,15 +38,16 @@ struct Options {
     bool reference = false;
     /// Settle by rational arithmetic every contact that rounding leaves possible but not proven, or does not locate
     /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50
-    /// at least), and 0 for contact at t = 0 alone (or before 2^-1071). Costs tens of microseconds and allocations for each such pair. Needs a build with GMP, which ends the
-    /// program if memory runs out.
+    /// at least), and 0 for contact at t = 0 alone (or before 2^-1071). Costs tens of microseconds and allocations for each
+    /// such pair. Needs a build with GMP, which ends the program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
     /// which they are as close; pairs within d at the start have toi 0 (Contact::at_start), all others in contact a positive one.
     /// Finite, in units of the coordinates. Not together with `exact`; contact roots are not counted.
     double minimum_separation = 0.0;
     /// With minimum_separation d: a pair counts as in contact once its distance is at most (1 + distance_tolerance) d
-    /// (rounding: README), which keeps the work bounded for pairs that graze. Finite, at least 0.
+    /// (rounding: README), which keeps the work bounded for pairs that graze. It is this, not `tolerance`, that says how early
+    /// toi may be. Finite, at least 0.
     double distance_tolerance = 1e-6;
 };
 
@@ -70,7 +72,7 @@ struct Summary {
     std::size_t odd = 0;           ///< Contacts at an odd number of roots, when roots were asked for.
     std::size_t even = 0;          ///< Contacts at an even number of roots, when roots were asked for.
     std::size_t invalid = 0;       ///< Pairs with a NaN or an infinity.
-    std::size_t scalar_pairs = 0;  ///< Pairs decided by the certified search.
+    std::size_t scalar_pairs = 0;  ///< Pairs that the lanes leave to the search for one pair at a time.
     Contact earliest{std::numeric_limits<std::size_t>::max(),
                      std::numeric_limits<double>::infinity()};  ///< Smallest toi, ties to the smaller index.
     Isa isa = Isa::automatic;      ///< Kernels that ran.
@@ -86,7 +88,7 @@ enum class Error : std::uint8_t {
     bad_isa_environment,   ///< FASTCCD_ISA names no instruction set, or one that is unavailable.
     index_out_of_range,    ///< an index of pair `pair` points outside its array.
     invalid_pair,          ///< pair `pair` has a NaN or an infinity, in a call that cannot leave it out.
-    out_of_memory,         ///< an allocation failed, or the system refused a thread; outputs are unspecified.
+    out_of_memory,         ///< an allocation failed, or the system refused a thread; what arrays hold is unspecified.
     bad_minimum_separation,  ///< minimum_separation is negative, infinite or not a number.
     bad_distance_tolerance,  ///< distance_tolerance is negative, infinite or not a number.
     exact_separation,        ///< options.exact together with a minimum separation.

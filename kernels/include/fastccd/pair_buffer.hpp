@@ -36,7 +36,7 @@ public:
     [[nodiscard]] double* data() noexcept { return data_.get(); }
     [[nodiscard]] const double* data() const noexcept { return data_.get(); }
 
-    /// Coordinate c (see pair_coordinates) of pair i.
+    /// Coordinate c (see pair_coordinates) of pair i. Neither is checked.
     [[nodiscard]] double& at(std::size_t i, std::size_t c) noexcept { return data_[index(i, c)]; }
     [[nodiscard]] double at(std::size_t i, std::size_t c) const noexcept { return data_[index(i, c)]; }
 
