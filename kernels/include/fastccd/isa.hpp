@@ -14,7 +14,7 @@ namespace fastccd {
 [[nodiscard]] FASTCCD_API std::optional<Isa> isa_from_name(std::string_view name) noexcept;
 /// Pairs per batch; 0 for Isa::automatic.
 [[nodiscard]] FASTCCD_API int lanes(Isa isa) noexcept;
-/// True if the kernels of that instruction set are part of this build.
+/// True if the kernels of that instruction set are part of this build; Isa::automatic is none.
 [[nodiscard]] FASTCCD_API bool isa_built(Isa isa) noexcept;
 /// True if isa_built and both the processor and the operating system support it.
 [[nodiscard]] FASTCCD_API bool isa_available(Isa isa) noexcept;

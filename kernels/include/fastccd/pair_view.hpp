@@ -15,7 +15,8 @@ inline constexpr std::size_t pair_coordinates = 24;
 inline constexpr std::size_t block_coordinates = pair_coordinates * block_pairs;
 
 /// Where the coordinates of `size` pairs lie. Nothing is copied or owned; the memory must
-/// stay valid and unchanged during a call. float coordinates are widened exactly.
+/// stay valid and unchanged during a call. float coordinates are widened exactly. Any alignment
+/// of the coordinates' type will do; blocks that begin cache lines, as in PairBuffer, are fastest.
 class PairView {
 public:
     enum class Layout : std::uint8_t {
