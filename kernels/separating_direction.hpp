@@ -60,10 +60,15 @@ FASTCCD_INLINE ShortestVector<L> to_nearest_side(const Vector3<L> (&r)[3], const
         Vector3<L> q, side;
         L square, t, inverse_square;
     };
+    const L zero = broadcast<L>(0.0), squares[3] = {dot(r[0], r[0]), dot(r[1], r[1]), dot(r[2], r[2])};
+    // From the end that is nearer: from the other, a corner close by is only as accurate as the side is short.
     const auto nearest_on = [&](int i) FASTCCD_INLINE_LAMBDA -> OnSide {
-        const L inverse_square = broadcast<L>(1.0) / dot(side[i], side[i]);
-        const L t = clamped((broadcast<L>(0.0) - dot(r[i], side[i])) * inverse_square);
-        const Vector3<L> q = add(r[i], scaled(side[i], t));
+        const int j = (i + 1) % 3;
+        const LaneMask<L> from_second = less(squares[j], squares[i]);
+        const Vector3<L> end = select(from_second, r[j], r[i]);
+        const L inverse_square = broadcast<L>(1.0) / dot(side[i], side[i]), at_end = dot(end, side[i]) * inverse_square;
+        const L t = clamped(select<L>(from_second, at_end, zero - at_end));
+        const Vector3<L> q = add(end, scaled(side[i], select<L>(from_second, zero - t, t)));
         return {q, side[i], dot(q, q), t, inverse_square};
     };
     const auto nearer = [](const OnSide& a, const OnSide& b) FASTCCD_INLINE_LAMBDA -> OnSide {
@@ -152,7 +157,8 @@ FASTCCD_INLINE Separation<L> separation(const Vector3<L> (&r)[3])
     const L normal_gap = max(max(of_normal.along, of_normal.against), zero);
     const L normal_square = dot(normal, normal), square = dot(shortest.upright, shortest.upright);
     // normal_gap / |normal| > gap / |q|, squared and multiplied out
-    const LaneMask<L> along_normal = less((gap * gap) * normal_square, (normal_gap * normal_gap) * square);
+    const LaneMask<L> along_normal = less(broadcast<L>(smallest_square), normal_square) &
+                                     less((gap * gap) * normal_square, (normal_gap * normal_gap) * square);
     const Vector3<L> v = select(along_normal, normal, shortest.upright);
     const L v_square = select<L>(along_normal, normal_square, square);
     const L sign = select<L>(along_normal & less(of_normal.along, of_normal.against), zero - one, one);

@@ -61,6 +61,7 @@ struct SeparationBounds {
 /// What a call asks for. All distances are in units of the coordinates.
 struct SeparationParameters {
     double distance;   ///< d; 0: contact itself, which is another search.
+    double tolerance;  ///< Relative.
     double threshold;  ///< A gap along a computed unit vector above this proves a distance above d.
     double stop;       ///< Closer than this is close enough to be reported.
     double aim;        ///< Halfway to there.
@@ -68,9 +69,9 @@ struct SeparationParameters {
 
     /// Computed unit vectors are longer than 1 by at most 5 u: the square errs by 3 u, its root by 2.5 u, the
     /// reciprocal and the product with it add 2 u. The multiplication here, and sums of a threshold and a bound, add 3 u.
-    FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double tolerance = 0.0)
-        : distance{d}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance}, aim{d + d * (0.5 * tolerance)},
-          certain{d * (1.0 - 0x1p-49)}
+    FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double distance_tolerance = 0.0)
+        : distance{d}, tolerance{distance_tolerance}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance},
+          aim{d + d * (0.5 * tolerance)}, certain{d * (1.0 - 0x1p-49)}
     {
     }
 

@@ -14,15 +14,6 @@ namespace {
 
 using namespace FASTCCD_KERNEL_NAMESPACE;
 
-/// d and what follows from it, in other units. What allows for rounding is formed anew: of a subnormal d it was rounded itself.
-SeparationParameters in_units(const SeparationParameters& s, int exponent)
-{
-    SeparationParameters scaled{std::scalbn(s.distance, exponent)};
-    scaled.stop = std::scalbn(s.stop, exponent);
-    scaled.aim = std::scalbn(s.aim, exponent);
-    return scaled;
-}
-
 /// The motion of a pair beyond the lanes' range, multiplied by the power of two that brings the largest extent near
 /// 1: the same on all axes, and for d, because distances are compared. Results that underflow err by some 2^-1074, which
 /// separation_floor covers.
@@ -34,7 +25,8 @@ RelativeMotion<double> scaled_motion(const double* coordinates, SearchParameters
         if (!differences.zero()) exponent = std::max(exponent, differences.exponent(parameters.t_max));
     RelativeMotion<double> r{};
     if (exponent == std::numeric_limits<int>::min()) return r;
-    parameters.separation = in_units(parameters.separation, -exponent);
+    // What follows from d is formed anew: of a subnormal one it was rounded, of one next to the largest double it was infinite.
+    parameters.separation = SeparationParameters{std::scalbn(parameters.separation.distance, -exponent), parameters.separation.tolerance};
     double start[3][3], end[3][3];
     for (int axis = 0; axis < 3; ++axis) axes[axis].put(start[axis], end[axis], parameters.t_max, -exponent);
     for (int i = 0; i < 3; ++i) {
