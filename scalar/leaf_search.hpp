@@ -30,12 +30,19 @@ public:
         if (is_leaf(whole)) return contact_in_leaf(whole);
         IntervalStack stack;
         stack.push_halves(whole);  // it has no certificate
-        while (const auto leaf = search.next_without_certificate(stack, false, most_intervals, is_leaf)) {
-            // Out of intervals: what is still waiting is looked at once more, but not halved.
-            const bool out_of_intervals = search.intervals > most_intervals;
-            const double contact = out_of_intervals ? leaf->a : contact_in_leaf(*leaf);
+        unsigned limit = most_intervals, extensions = 0;
+        while (const auto found = search.next_without_certificate(stack, false, limit, is_leaf)) {
+            // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
+            const bool is_wide = !is_leaf(*found);
+            if (is_wide && extensions < most_extensions) {
+                ++extensions;
+                limit = search.intervals + extension;
+                stack.push_halves(*found);
+                continue;
+            }
+            const double contact = is_wide ? found->a : contact_in_leaf(*found);
             if (contact == none) continue;
-            leaf_of_answer = *leaf;
+            leaf_of_answer = *found;
             return contact;
         }
         return none;

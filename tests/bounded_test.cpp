@@ -18,8 +18,8 @@ namespace {
 
 constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
 
-/// At the cap, what still waits on the two stacks of intervals (leaves, parts of a leaf) is looked at once.
-constexpr unsigned most_intervals_with_stack = scalar::most_intervals + 2 * 128;
+/// At the cap, what still waits on the two stacks of intervals (leaves, parts of a leaf) is looked at once, what is wide gets more.
+constexpr unsigned most_intervals_with_stack = scalar::most_intervals + scalar::most_extensions * scalar::extension + 2 * 128;
 /// Enough for every pair that is not degenerate: a path of halvings to a contact, and some on the way.
 constexpr unsigned ordinary_intervals = 512;
 

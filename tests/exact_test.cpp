@@ -27,6 +27,23 @@ Found find(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Opti
     return found;
 }
 
+/// So degenerate in the first half of the step that the search uses up its intervals; regular contact at 0.81.
+TEST(Exact, LocatesContactAfterTheCap)
+{
+    const std::vector<oracle::Pair> pairs{{{{0, 0, 0}, {0x1.e8p-26, 0x1.9p-26, 0}, {-0x1.4p-30, 0, 0}, {0, 16, -0.75},
+                                            {4, -0.25, -3}, {-3.9921875, 0.75, -1}, {-2.03125, 0, -1.7626953125}, {0, 0, 0}}}};
+    const oracle::Verdict verdict = oracle::exact_ccd(oracle::Kind::edge_edge, pairs[0], 1.0);
+    ASSERT_TRUE(verdict.contact);
+    for (const bool exact : {false, true}) {
+        Options options;
+        options.exact = exact;
+        const Found found = find(oracle::Kind::edge_edge, pairs, options);
+        ASSERT_EQ(found.contacts.size(), 1u);
+        EXPECT_GE(found.contacts[0].toi, verdict.t_lo - options.tolerance);
+        EXPECT_LE(found.contacts[0].toi, verdict.t_hi);
+    }
+}
+
 TEST(Exact, VerdictIsTheOracles)
 {
     std::size_t at_start = 0;

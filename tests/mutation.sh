@@ -231,6 +231,10 @@ mutant 'tasks: those of the program begun meanwhile' scheduler/parallel_ranges.h
 mutant 'adapters: separation to the default tolerance' kernels/include/fastccd/adapters/distance_tolerance.hpp 's/std::min\(options\.distance_tolerance, distance \/ minimum_separation\)/options.distance_tolerance/' adapters_test
 mutant 'lists grow by what is needed alone' scheduler/fastccd.cpp 's/std::max\(needed, 2 \* list\.capacity\(\)\)/needed/' api_test
 
+mutant 'nothing more after the cap' scalar/certified_search.hpp 's/most_extensions = 16/most_extensions = 0/' exact_test
+mutant 'separation: normals that vanish' kernels/separating_direction.hpp 's/less\(broadcast<L>\(smallest_square\), normal_square\) &\s*//' separation_test
+mutant 'separation: corners from the far end' kernels/separating_direction.hpp 's/less\(squares\[j\], squares\[i\]\)/less(squares[i], squares[j])/' separation_test
+
 # ---- Boxes of indexed pairs
 boxes=scheduler/mesh_boxes.cpp
 mutant 'boxes: highest is the lower line' $boxes 's/-1 - (start|end)/-$1/g' boxes_test
