@@ -38,8 +38,9 @@ struct Options {
     bool reference = false;
     /// Settle by rational arithmetic every contact that rounding leaves possible but not proven, or does not locate
     /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50
-    /// at least), and 0 for contact at t = 0 alone (or before 2^-1071). Costs tens of microseconds and allocations for each
-    /// such pair. Needs a build with GMP, which ends the program if memory runs out.
+    /// at least) and a rounding (2^-51), and 0 for contact at t = 0 alone (or before 2^-1071). Costs allocations and some ten to
+    /// some hundred microseconds for each such pair, milliseconds for a few, and up to 0.2 s if its coordinates' exponents spread
+    /// over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
     /// which they are as close; pairs within d at the start have toi 0 (Contact::at_start), all others in contact a positive one.
@@ -55,8 +56,8 @@ struct Options {
 struct Contact {
     std::size_t pair;  ///< Index of the pair in the input.
     double toi;        ///< Lower bound of its first time of contact, in [0, t_max].
-    /// There is contact, certainly: the cubic changes sign beyond rounding around toi while inclusion holds, or
-    /// Options::exact has settled it; with a minimum separation, the pair certainly comes as close at toi or later.
+    /// There is contact, certainly: the cubic changes sign beyond rounding around toi, within 2^-6 of the step, while inclusion
+    /// holds, or Options::exact has settled it; with a minimum separation, the pair certainly comes as close at toi or later.
     /// Otherwise contact is not excluded, to within rounding or distance_tolerance.
     bool proven = false;
     /// With a minimum separation: the pair is not certainly farther apart than that at t = 0.
