@@ -253,6 +253,23 @@ TEST(NothingInvented, WhatIsLeftAtTheCapIsStillLookedAt)
     }
 }
 
+/// The worst of a million pairs that hill climbing led through, up to the cap and to large distances there.
+TEST(NothingInvented, WorstAtTheCap)
+{
+    const oracle::Pair pair{{{-0x1.320e448000001p+16, -0x1.bb4ff9cp+16, -0x1.46d5b806c5c0cp+16},
+                             {0x1.7ap+1, 0x1.65998ba7c99edp-23, 0x0p+0},
+                             {0x1.000000001ea34p-8, 0x1.3a00060436f5dp-1, 0x1.b800010154a83p-2},
+                             {0x1p-8, -0x1.adff3ad0e204p-1, 0x1.59bd4472364a4p+1},
+                             {0x1.320f837f8fc05p+15, 0x1.bb4f1caffd03dp+15, 0x1.46d7ccffffffbp+15},
+                             {0x1.7a00797992cb4p+1, -0x1.4cfffa48247bdp+0, 0x1.ba00000000003p-2},
+                             {0x1.80000b89d1d5ap-9, 0x1.3a0016c90de97p-1, 0x1.00308d232c094p-3},
+                             {0x1.ffffffffffffep-9, -0x1.adfffc11b2425p-1, 0x1.59cp+1}}};
+    Worst worst;
+    measure_all(oracle::Kind::vertex_face, {pair}, 1e-9, worst);
+    expect_close(oracle::Kind::vertex_face, "worst at the cap", 1e-9, worst, thin_bound);
+    EXPECT_GT(worst.beyond_capped, 0.25 * capped_bound) << "no longer the worst: another is to be looked for";
+}
+
 TEST(NothingInvented, PublicData)
 {
     const auto data = data_directory();

@@ -280,6 +280,23 @@ TEST(Separation, CornersOfLongSides)
     EXPECT_LE(counts.worst_thin, 0.1 * thin_bound);
 }
 
+/// Edges nearly parallel at the start, the worst that hill climbing led to: as close to d as rounding lets them be told apart.
+TEST(Separation, WorstAngle)
+{
+    const oracle::Pair pair{{{0x1.1e50000000c39p+2, -0x1.92e206179009fp+1, 0x1.7d783f62d944p+23},
+                             {0x1.b860000005374p+1, -0x1.3799149e33ad1p+1, 0x1.1e195de4ac8bap+23},
+                             {-0x1.ddd83e4e0f295p-29, -0x1.2dffffffddc8bp-2, 0x1.9801af9306424p-2},
+                             {0x1.117dd9b0e2f8ap+3, -0x1.7fff954cc3e75p+2, 0x1.7d783fade82acp+24},
+                             {0x1.1b55ac79a35ddp+2, 0x0p+0, 0x1.7d783f62d944p+23},
+                             {-0x1.5ef4acfdc9393p-49, -0x1.4f243c2d53c57p-51, 0x1.1e195de4ac8bap+23},
+                             {0x1.90800000000f8p+0, -0x1.df06d60f54bcbp-26, 0x0p+0},
+                             {0x1.072be7133dc14p+0, -0x1.3abf862ce14a4p-26, 0x1.7d783fade82acp+24}}};
+    Counts counts;
+    check(oracle::Kind::edge_edge, pair, options_for(0x1.846fadef9931dp-13), counts);
+    expect_close("worst angle", counts);
+    EXPECT_GT(counts.worst_thin, 0.5 * thin_bound) << "no longer the worst: another is to be looked for";
+}
+
 /// (1 + distance_tolerance) d may be beyond the largest double, and the pair's distance, too.
 TEST(Separation, DistancesAtTheEndOfDouble)
 {
