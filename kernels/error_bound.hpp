@@ -210,9 +210,9 @@ struct ErrorBounds {
 
 /// Absolute floor under extents, against what underflows; areas are 2^-532 and volumes 2^-798 at least, then. Lanes take pairs
 /// whose coordinates differ by less than largest_extent. A product of two components that underflows errs by at most 2^-1075;
-/// times a third component, below 2^100, that is less than 2^-975, some twenty times over: far below u 2^-798. Interpolated components err by a few 2^-1074:
-/// far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes and go to the scalar path, which
-/// scales each axis by a power of two.
+/// times a third component, below 2^100, that is less than 2^-975, some twenty times over: far below u 2^-798. Interpolated
+/// components err by a few 2^-1074: far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes
+/// and go to the scalar path, which scales each axis by a power of two.
 inline constexpr double length_floor = 0x1p-266;
 /// Smallest V for which discriminants (degree 2 in V) cannot underflow.
 inline constexpr double smallest_volume = 0x1p-300;

@@ -61,7 +61,7 @@ FASTCCD_INLINE ShortestVector<L> to_nearest_side(const Vector3<L> (&r)[3], const
         L square, t, inverse_square;
     };
     const L zero = broadcast<L>(0.0), squares[3] = {dot(r[0], r[0]), dot(r[1], r[1]), dot(r[2], r[2])};
-    // From the end that is nearer: from the other, a corner close by is only as accurate as the side is short.
+    // From the nearer end: from the other, a corner close by would be off by the rounding of the whole side.
     const auto nearest_on = [&](int i) FASTCCD_INLINE_LAMBDA -> OnSide {
         const int j = (i + 1) % 3;
         const LaneMask<L> from_second = less(squares[j], squares[i]);

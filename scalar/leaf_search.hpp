@@ -66,7 +66,7 @@ public:
     /// in some interval around s. A root may lie too close to the leaf's end, and inclusion may end in a wide leaf.
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
-        // Out of intervals, contact may have been found in one that is wider than a leaf.
+        // At the cap, contact may have been found in an interval that is wider than a leaf.
         if (contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
         for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
             const Interval around{std::max(s - reach, 0.0), std::min(s + reach, 1.0)};
