@@ -148,11 +148,14 @@ ExactContact exact_contact(PairKind kind, const double* coordinates, const Searc
         return true;
     };
 
-    // The volume is the same for both triangles of an edge-edge pair but for its sign.
-    if (!triangles[0].volume.is_zero()) {
-        for (AlgebraicTime& time : roots(triangles[0].volume))
+    // The volume is the same for both triangles of an edge-edge pair but for its sign. Pairs that rest on one another have contact
+    // at time 0, and none of the other roots need be told apart.
+    const BinaryForm& volume = triangles[0].volume;
+    if (AlgebraicTime start = AlgebraicTime::rational({0, 0}); volume.at_start() == 0 && test(start)) return {true, 0.0};
+    if (!volume.is_zero()) {
+        for (AlgebraicTime& time : roots(volume))
             if (test(time)) break;
-    } else if (AlgebraicTime start = AlgebraicTime::rational({0, 0}); !test(start)) {
+    } else {
         for (const MovingTriangle& triangle : triangles)
             triangle.for_each_quadratic([&](const BinaryForm& form) {
                 if (form.is_zero()) return;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <certified_search.hpp>
@@ -27,6 +28,7 @@ public:
         const Interval whole{0.0, 1.0};
         const auto is_leaf = [&](Interval i) { return i.width() <= parameters.leaf_width; };
         search.intervals = 1;
+        if (in_contact_at_start()) return 0.0;
         if (is_leaf(whole)) return contact_in_leaf(whole);
         IntervalStack stack;
         stack.push_halves(whole);  // it has no certificate
@@ -66,6 +68,7 @@ public:
     /// in some interval around s. A root may lie too close to the leaf's end, and inclusion may end in a wide leaf.
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
+        if (s == 0.0 && zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
         // At the cap, contact may have been found in an interval that is wider than a leaf.
         if (contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
         for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
@@ -87,6 +90,21 @@ private:
 
     /// Within less, rounding hides every change of sign; within more, inclusion rarely lasts.
     static constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
+
+    /// The cubic at time 0 is zero to within its bound.
+    [[nodiscard]] bool zero_at_start() const { return std::abs(pair.coefficients().cubic[0]) <= pair.cubic_bound(); }
+
+    /// Whether the walk would come down to time 0 and stop there, as it does for pairs that rest on one another, by one look
+    /// instead of a hundred. A certificate on [0, b] needs strict signs at 0 as well, and coefficients on [0, b] begin with the
+    /// values at 0 as they are: where there is none at 0 there is none. Nor by eq. 7, but for rounding, if not on the finest part: its
+    /// areas change by at most `change` (area_inclusion.hpp) of the distance between two centres, which for two parts together is no
+    /// more than for their sum. The leaf is asked all the same, as lanes ask by eq. 7 there.
+    bool in_contact_at_start()
+    {
+        if (!zero_at_start()) return false;  // as for most, without a look
+        leaf_of_answer = {0.0, parameters.leaf_width};
+        return !search.one_of_three_apart({0.0, 0.0}, {0.0, finest_at_zero}, leaf_of_answer);
+    }
 
     /// The cubic has strict opposite signs at the ends.
     [[nodiscard]] bool sign_changes(Interval i) const

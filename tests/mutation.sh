@@ -145,6 +145,8 @@ mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/leaf\.a > 0\.0
 mutant 'search: coarse next to time 0' scalar/leaf_search.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
 mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && pair\.apart_by_area\(i\)\)//' ordered_search_test
+mutant 'search: contact at the start whatever the certificates' scalar/ordered_search.hpp 's/return apart\(i\) \|\| apart\(j\) \|\| apart\(k\);/return false;/' ordered_search_test
+mutant 'several: contact at the start whatever the answers' scalar/ordered_search.hpp 's/return \(ask\(questions, true\) & 7\) != 0;/return false;/' ordered_search_test
 mutant 'several: answers for other intervals' scalar/ordered_search.hpp 's/if \(!\(questions\.at\(k\) == i\)\) continue;//' ordered_search_test
 mutant 'several: the way taken whatever the answers' scalar/ordered_search.hpp 's/if \(\(\(answers \^ apart\)[^;]*;//' ordered_search_test
 mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel\.lanes <= limit/intervals <= limit/' ordered_search_test
