@@ -133,6 +133,63 @@ def peer_table(rows):
     return ["kind", "data", "library", "M pairs/s", "ns/pair", "contacts", "missed", "extra", "spread"], out
 
 
+def goal_table(rows):
+    """What the pipeline is meant to reach with AVX-512, and what this record has of it. Ratios are of one record."""
+    def row(kind, data, layout="blocked", question="", threads=1, isa="avx512"):
+        parts = [kind, isa, data, layout, "double", *([question] if question else []), f"threads:{threads}"]
+        return rows.get("/".join(parts), {})
+
+    def rate(*args, **kwargs):
+        return row(*args, **kwargs).get("pairs/s")
+
+    def ratio(a, b):
+        return a / b if a and b else None
+
+    def millions(value):
+        return number(value, 1e-6)
+
+    def nanoseconds(value):
+        return number(value, 1e9)
+
+    kinds, scenes = ("vertex_face", "edge_edge"), ("cloth-ball", "n-body")
+
+    def of_kinds(value):
+        return {kind.replace("_", "-"): value(kind) for kind in kinds}
+
+    def of_scenes(value, names=scenes):
+        return {f"{kind.replace('_', '-')} {data}": value(kind, data) for kind in kinds for data in names}
+
+    def share_of_search(kind, data):
+        return rows.get(f"search/{kind}/avx512/undecided/{data}", {}).get("of_time")
+
+    # What, at least or at most, how much, what was found, how to write numbers.
+    goals = [
+        ("random pairs, packed, M pairs/s", min, 60e6, {"vertex-face": rate("vertex_face", "random")}, millions),
+        ("rate of random edge-edge pairs over vertex-face", min, 0.7, {"": ratio(rate("edge_edge", "random"), rate("vertex_face", "random"))}, percent),
+        ("AVX2 over AVX-512, random pairs", min, 0.6, of_kinds(lambda kind: ratio(rate(kind, "random", isa="avx2"), rate(kind, "random"))), percent),
+        ("scenes, packed, of the streaming limit", min, 0.85, of_scenes(lambda kind, data: row(kind, data).get("limit_fraction")), percent),
+        ("cloth-ball, indexed, M pairs/s", min, 110e6, {"vertex-face": rate("vertex_face", "cloth-ball", "indexed")}, millions),
+        ("n-body, indexed, M pairs/s", min, 160e6, {"vertex-face": rate("vertex_face", "n-body", "indexed")}, millions),
+        ("earliest contact over all, rates, packed", min, 1.0,
+         of_scenes(lambda kind, data: ratio(rate(kind, data, question="earliest"), rate(kind, data))), percent),
+        ("earliest contact, packed, ns a pair", max, 6e-9, of_scenes(lambda kind, data: ratio(1.0, rate(kind, data, question="earliest"))), nanoseconds),
+        ("certificates on data in L2, ns a pair", max, 3.5e-9,
+         of_scenes(lambda kind, data: rows.get(f"stage/{kind}/avx512/certificates/{data}", {}).get("s/pair"), ("random", "generated")), nanoseconds),
+        ("two threads over one, random pairs", min, 1.85, of_kinds(lambda kind: ratio(rate(kind, "random", threads=2), rate(kind, "random"))), number),
+        ("two threads, scenes packed, of their streaming limit", min, 0.9,
+         of_scenes(lambda kind, data: row(kind, data, threads=2).get("limit_fraction")), percent),
+        ("certified search, share of the time", max, 0.02, of_scenes(share_of_search, ("generated", *scenes, "cloth-funnel")), percent),
+    ]
+    out = []
+    for what, worse, wanted, found, write in goals:
+        found = {label: value for label, value in found.items() if value}
+        if found:
+            held = sum(worse(value, wanted) == wanted for value in found.values())
+            out.append([what, f"at {'least' if worse is min else 'most'} {re.sub(r'[.]0+$', '', write(wanted))}",
+                        ", ".join(f"{label} {write(value)}".strip() for label, value in found.items()), f"{held} of {len(found)}"])
+    return ["goal, with AVX-512", "wanted", "measured", "held"], out
+
+
 def mesh_table(rows):
     out = [[what.replace("_", " "), name, number(row["vertices"], digits=1), number(1e3 * row["vertices"] / row["vertices/s"]),
             percent(row.get("spread"))]
@@ -147,7 +204,7 @@ def tables(record):
     text = (f"{context['cpu']}, {context['num_cpus']} threads, {context['compiler']}, `{context['flags']}`, "
             f"{context['date'][:10]}, commit {context.get('commit', 'unknown')}, "
             f"load average at the start {context['load_avg'][0]:.1f}.\n")
-    for title, (header, body) in (("Narrow phase", narrow_phase_table(rows, isas)), ("Moving mesh", mesh_table(rows)),
+    for title, (header, body) in (("Goals", goal_table(rows)), ("Narrow phase", narrow_phase_table(rows, isas)), ("Moving mesh", mesh_table(rows)),
                                   ("Stages", stage_table(rows, isas)), ("Certified search", search_table(rows, isas)),
                                   ("Peers, one thread", peer_table(rows))):
         if body:

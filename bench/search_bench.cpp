@@ -1,11 +1,13 @@
 // The certified search per instruction set, which gives it lanes for intervals: `search/vertex_face/avx2/undecided/cloth-ball`, over
 // the pairs that the pipeline leaves to it, `contacts`, over pairs in contact, which it has to follow down to the tolerance,
-// and `sample`, over pairs from all over the data set.
+// `sample`, over pairs from all over the data set, and `resting`, over pairs of bricks that lie on one another, without any gap.
 #include "search_bench.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -76,6 +78,29 @@ SearchedPairs undecided_pairs(PairKind kind, Isa isa, const PairView& view, cons
     return found;
 }
 
+/// A corner of a brick on a face of another, or their edges across one another: all are carried along, the first one slides as well.
+/// Multiples of 2^-10 do not round.
+SearchedPairs resting_pairs(PairKind kind)
+{
+    std::mt19937_64 random{1};
+    const auto below = [&](std::uint64_t end) { return static_cast<double>(random() % end) * 0x1p-10; };
+    using Points = std::array<std::array<double, 2>, 4>;  // in the plane
+    SearchedPairs made;
+    for (std::size_t i = 0; i < most_searched; ++i) {
+        const double a = below(512), b = below(512), c = below(1024), d = below(1024);
+        const Points points = kind == PairKind::vertex_face ? Points{{{a, b}, {0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}}
+                                                            : Points{{{0.0, c}, {1.0, d}, {a, 0.0}, {b, 1.0}}};
+        const std::size_t first_of_other = kind == PairKind::vertex_face ? 1 : 2;
+        const double height = below(1024), along = below(64), slide = below(64);
+        for (const double t : {0.0, 1.0})
+            for (std::size_t k = 0; k < points.size(); ++k) {
+                const double moved = t * (k < first_of_other ? along + slide : along);
+                made.coordinates.insert(made.coordinates.end(), {points[k][0] + moved, points[k][1] + moved, height + t * along});
+            }
+    }
+    return made;
+}
+
 SearchedPairs pairs_to_search(const std::string& sort, PairKind kind, Isa isa, const PairView& view, const SearchParameters& parameters)
 {
     if (sort == "undecided") return undecided_pairs(kind, isa, view, parameters);
@@ -96,12 +121,11 @@ SearchedPairs pairs_to_search(const std::string& sort, PairKind kind, Isa isa, c
 void run_search(benchmark::State& state, const std::string& sort, PairKind kind, Isa isa, const std::string& data)
 {
     const SearchParameters parameters{Options{}.tolerance, 1.0, false};
-    const Dataset& set = dataset(data, kind);
     // Repetitions follow each other and share the pairs.
     static SearchedPairs pairs;
     const std::string wanted = sort + name(kind) + fastccd::name(isa) + data;
     if (pairs.name != wanted) {
-        pairs = pairs_to_search(sort, kind, isa, set.packed.view(), parameters);
+        pairs = sort == "resting" ? resting_pairs(kind) : pairs_to_search(sort, kind, isa, dataset(data, kind).packed.view(), parameters);
         pairs.name = wanted;
     }
     const std::size_t count = pairs.coordinates.size() / pair_coordinates;
@@ -126,7 +150,7 @@ void run_search(benchmark::State& state, const std::string& sort, PairKind kind,
     state.counters["intervals"] = per_pair(intervals);
     state.counters["kept"] = per_pair(found);
     if (pairs.pipeline_seconds == 0.0) return;
-    state.counters["of_pairs"] = static_cast<double>(count) / static_cast<double>(set.packed.size());
+    state.counters["of_pairs"] = static_cast<double>(count) / static_cast<double>(dataset(data, kind).packed.size());
     state.counters["of_time"] = seconds / (seconds + pairs.pipeline_seconds);
 }
 
@@ -134,17 +158,19 @@ void run_search(benchmark::State& state, const std::string& sort, PairKind kind,
 
 void register_search_benchmarks()
 {
-    for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge})
+    const auto add = [](PairKind kind, const std::string& sort, const std::string& data) {
+        for (const Isa isa : available_isas()) {
+            const std::string full_name = std::string("search/").append(name(kind)) + "/" + fastccd::name(isa) + "/" + sort + "/" + data;
+            benchmark::RegisterBenchmark(full_name.c_str(), [=](benchmark::State& state) { run_search(state, sort, kind, isa, data); })
+                ->Unit(benchmark::kMicrosecond);
+        }
+    };
+    for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge}) {
         for (const std::string& data : available_datasets())
-            for (const char* sort : {"sample", "contacts", "undecided"}) {
-                if (sort != std::string("undecided") && data != "random" && data != "generated") continue;
-                for (const Isa isa : available_isas()) {
-                    const std::string full_name =
-                        std::string("search/").append(name(kind)) + "/" + fastccd::name(isa) + "/" + sort + "/" + data;
-                    benchmark::RegisterBenchmark(full_name.c_str(), [=](benchmark::State& state) { run_search(state, sort, kind, isa, data); })
-                        ->Unit(benchmark::kMicrosecond);
-                }
-            }
+            for (const char* sort : {"sample", "contacts", "undecided"})
+                if (sort == std::string("undecided") || data == "random" || data == "generated") add(kind, sort, data);
+        add(kind, "resting", "bricks");
+    }
 }
 
 }  // namespace fastccd::bench

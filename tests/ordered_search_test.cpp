@@ -107,7 +107,7 @@ TEST(OrderedSearch, ForeseesWhereContactIs)
 template <PairKind kind>
 bool walk_ends_at_zero(const scalar::PairPolynomials<kind>& pair, double leaf_width)
 {
-    for (double end = 0.5; end >= 0x1p-100; end *= 0.5) {
+    for (double end = leaf_width < 1.0 ? 0.5 : 1.0; end >= 0x1p-100; end *= 0.5) {
         const scalar::Interval i{0.0, end};
         if (pair.apart(i) || (end <= leaf_width && pair.apart_by_area(i))) return false;
     }
@@ -119,9 +119,8 @@ struct AtStart {
 };
 
 template <PairKind kind>
-void compare_with_walk(const std::vector<oracle::Pair>& pairs, const std::string& what, AtStart& seen)
+void compare_with_walk(const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters, const std::string& what, AtStart& seen)
 {
-    const SearchParameters parameters{1e-9, 1.0, false};
     for (const oracle::Pair& pair : pairs) {
         const double* const coordinates = pair[0].data();
         const scalar::PairPolynomials<kind> polynomials{coordinates, parameters};
@@ -150,12 +149,16 @@ TEST(OrderedSearch, ContactAtTheStartTakesOneLook)
                 pairs.push_back(moved);
             }
             const std::string what = std::string(kind_name(kind)) + " " + family;
-            if (kind == oracle::Kind::vertex_face)
-                compare_with_walk<PairKind::vertex_face>(pairs, what, seen);
-            else
-                compare_with_walk<PairKind::edge_edge>(pairs, what, seen);
+            for (const double tolerance : {1.0, 1e-3, 1e-9, 1e-14})
+                for (const double t_max : {1.0, 0.7}) {
+                    const SearchParameters parameters{tolerance, t_max, false};
+                    if (kind == oracle::Kind::vertex_face)
+                        compare_with_walk<PairKind::vertex_face>(pairs, parameters, what, seen);
+                    else
+                        compare_with_walk<PairKind::edge_edge>(pairs, parameters, what, seen);
+                }
         }
-        EXPECT_GT(seen.pairs, 3000u);
+        EXPECT_GT(seen.pairs, 20000u);
         EXPECT_EQ(seen.not_foreseen, 0u) << "of " << seen.pairs;
     }
 }
