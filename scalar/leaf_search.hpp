@@ -103,7 +103,9 @@ private:
     {
         if (!zero_at_start()) return false;  // as for most, without a look
         leaf_of_answer = {0.0, parameters.leaf_width};
-        return !search.one_of_three_apart({0.0, 0.0}, {0.0, finest_at_zero}, leaf_of_answer);
+        if (search.one_of_three_apart({0.0, 0.0}, {0.0, finest_at_zero}, leaf_of_answer)) return false;
+        search.intervals += 3;  // counted only now: looking ahead must not bring the walk nearer to its cap
+        return true;
     }
 
     /// The cubic has strict opposite signs at the ends.
