@@ -94,11 +94,12 @@ private:
     /// The cubic at time 0 is zero to within its bound.
     [[nodiscard]] bool zero_at_start() const { return std::abs(pair.coefficients().cubic[0]) <= pair.cubic_bound(); }
 
-    /// Whether the walk would come down to time 0 and stop there, as it does for pairs that rest on one another, by one look
-    /// instead of a hundred. A certificate on [0, b] needs strict signs at 0 as well, and coefficients on [0, b] begin with the
-    /// values at 0 as they are: where there is none at 0 there is none. Nor by eq. 7, but for rounding, if not on the finest part: its
-    /// areas change by at most `change` (area_inclusion.hpp) of the distance between two centres, which for two parts together is no
-    /// more than for their sum. The leaf is asked all the same, as lanes ask by eq. 7 there.
+    /// Whether the walk would come down to time 0 and stop there, as for pairs that rest on one another: one look instead of a hundred.
+    /// - Without eq. 7: certificates on [0, b] need strict signs at 0, too, and coefficients on [0, b] begin with the very values
+    ///   at 0. Without one at 0 there is none on any [0, b].
+    /// - Eq. 7: between two centres the areas change by at most change(distance) (area_inclusion.hpp), and change(d) + change(e) <=
+    ///   change(d + e). If it fails on the finest part, it fails on every wider one, but for rounding. On the first leaf it is asked
+    ///   for all the same, because that is where lanes ask.
     bool in_contact_at_start()
     {
         if (!zero_at_start()) return false;  // as for most, without a look
