@@ -29,7 +29,7 @@ struct PairCoefficients {
 /// Bit i: the pair is certainly apart on [starts[i], ends[i]], one interval per lane. `by_area`: eq. 7 counts, too.
 using ApartOnIntervals = unsigned(const PairCoefficients&, const double* starts, const double* ends, bool by_area);
 
-/// The same for the lanes of one instruction set, `lanes` intervals at a time. Null: not for this one.
+/// The same for the lanes of one instruction set, `lanes` intervals at a time, at least 4. Null: not for this one.
 struct IntervalKernel {
     unsigned lanes;
     ApartOnIntervals* apart;

@@ -362,6 +362,12 @@ TEST(Separation, KeepsEveryContactOfPublicData)
     EXPECT_GT(contacts, 300000u);
 }
 
+unsigned looks_at(oracle::Kind kind, const oracle::Pair& pair, double d)
+{
+    const SearchParameters parameters{1e-9, 1.0, false, SeparationParameters{d, 1e-6}};
+    return scalar::separation_search(pair_kind(kind), pair[0].data(), parameters).intervals;
+}
+
 /// Larger distances are reached no later, but for the tolerance, and never with more than the cap of looks.
 TEST(Separation, BoundedLooks)
 {
@@ -375,8 +381,7 @@ TEST(Separation, BoundedLooks)
                 for (const oracle::Pair& pair : pairs) {
                     const double d = relative * size_of(pair);
                     if (!(d > 0.0) || std::isinf(d)) continue;
-                    const SearchParameters parameters{1e-9, 1.0, false, SeparationParameters{d, 1e-6}};
-                    const unsigned count = scalar::separation_search(pair_kind(kind), pair[0].data(), parameters).intervals;
+                    const unsigned count = looks_at(kind, pair, d);
                     most = std::max(most, count);
                     ++pairs_in_all;
                     looks += count;
@@ -388,6 +393,27 @@ TEST(Separation, BoundedLooks)
         EXPECT_LE(most, 4098u);  // the cap, the first look, the proof
         EXPECT_LT(at_cap, pairs_in_all / 100);
     }
+}
+
+/// Edges that the search comes up to ever more slowly: the time reached at the cap is the answer, and not late.
+TEST(Separation, CapOnLooks)
+{
+    const oracle::Pair pair{{{0x1.2973d3e62287fp+0, 0x1.e07de3737894bp-2, 0x1.7418f2e69c57dp+0},
+                             {0x1.91a2608a24514p-1, -0x1.6919ffdc23c2ap-1, -0x1.ecc48963927fp-2},
+                             {0x1.98e62fbaa0984p-1, -0x1.527f151c40ap-1, -0x1.a24b7006f517cp-2},
+                             {-0x1.9ba88d9e95adp-4, -0x1.9eaf2025e810cp-4, -0x1.1bbcab1f24aafp-2},
+                             {0x1.507ece0c183f4p-2, -0x1.9b7aa64110b64p-4, 0x1.9bc7eeee185adp-2},
+                             {0x1.73d68e2386dd9p+0, -0x1.70f499295c2dcp-2, -0x1.20a6e5880e9d8p+0},
+                             {0x1.6905d5e827a16p+0, -0x1.66f3eabac80cdp-2, -0x1.11ee6da8d9214p+0},
+                             {-0x1.b428b37463d54p-1, 0x1.198d71e50b029p-2, -0x1.85ae22d7a12f8p-1}}};
+    const Options options = options_for(0x1.5798ee2308c3ap-27);
+    std::printf("d %.2g s\n", options.minimum_separation / size_of(pair));
+    EXPECT_GE(looks_at(oracle::Kind::edge_edge, pair, options.minimum_separation), 4096u);
+    Counts counts;
+    check(oracle::Kind::edge_edge, pair, options, counts);
+    counts.report("the cap on looks");
+    EXPECT_EQ(counts.reported, 1u);
+    EXPECT_EQ(counts.not_shown, 0u);
 }
 
 }  // namespace
