@@ -74,20 +74,26 @@ BinaryForm without_multiple_roots(const BinaryForm& f)
 DyadicPart first_half(const DyadicPart& part) { return {2 * part.index, part.depth + 1}; }
 DyadicPart second_half(const DyadicPart& part) { return {2 * part.index + 1, part.depth + 1}; }
 
-/// Appends the roots of f, all simple, inside the part.
-void isolate(const BinaryForm& f, const DyadicPart& part, std::vector<AlgebraicTime>& found)
+/// Appends the roots of f, all simple, inside (0, 1), in order. Roots as close as coordinates of very different size allow are told apart
+/// thousands of halvings down, so what waits is a list and not the caller's stack.
+void isolate(const BinaryForm& f, std::vector<AlgebraicTime>& found)
 {
-    const BinaryForm here = restricted(f, part);
-    const int variations = here.variations();
-    if (variations == 0) return;
-    if (variations == 1 && here.at_start() != 0 && here.at_end() != 0) {
-        found.push_back(AlgebraicTime::inside(f, part));
-        return;
+    std::vector<DyadicPart> waiting{{0, 0}};
+    while (!waiting.empty()) {
+        const DyadicPart part = std::move(waiting.back());
+        waiting.pop_back();
+        const BinaryForm here = restricted(f, part);
+        // A second half answers for the middle; a first one starts where the whole does.
+        if (mpz_odd_p(part.index.get_mpz_t()) != 0 && here.at_start() == 0) found.push_back(AlgebraicTime::rational(part));
+        const int variations = here.variations();
+        if (variations == 0) continue;
+        if (variations == 1 && here.at_start() != 0 && here.at_end() != 0) {
+            found.push_back(AlgebraicTime::inside(f, part));
+            continue;
+        }
+        waiting.push_back(second_half(part));
+        waiting.push_back(first_half(part));
     }
-    const DyadicPart second = second_half(part);
-    isolate(f, first_half(part), found);
-    if (restricted(f, second).at_start() == 0) found.push_back(AlgebraicTime::rational(second));
-    isolate(f, second, found);
 }
 
 }  // namespace
@@ -192,7 +198,7 @@ std::vector<AlgebraicTime> roots(const BinaryForm& f)
     std::vector<AlgebraicTime> found;
     if (f.at_start() == 0) found.push_back(AlgebraicTime::rational({0, 0}));
     const BinaryForm simple = without_multiple_roots(f);
-    isolate(simple, {0, 0}, found);
+    isolate(simple, found);
     if (f.at_end() == 0) found.push_back(AlgebraicTime::rational({1, 0}));
     return found;
 }

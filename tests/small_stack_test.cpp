@@ -1,0 +1,130 @@
+// The README promises that 64 KiB of stack are enough for a thread that calls, as plugins and job systems have them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <climits>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <pthread.h>
+
+#include <tbb/global_control.h>
+
+#include "amount.hpp"
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+/// Frames of instrumented code are several times as large. Some systems give no thread less than PTHREAD_STACK_MIN.
+std::size_t stack_bytes()
+{
+#if defined(FASTCCD_SANITIZED)
+    constexpr std::size_t promised = 1024 * 1024;
+#else
+    constexpr std::size_t promised = 64 * 1024;
+#endif
+    return std::max(promised, static_cast<std::size_t>(PTHREAD_STACK_MIN));
+}
+
+/// Calls `function` on a thread that has no more stack than promised. What needs more ends the test with a segmentation fault.
+template <class Function>
+void on_small_stack(Function function)
+{
+    pthread_attr_t attributes;
+    ASSERT_EQ(pthread_attr_init(&attributes), 0);
+    ASSERT_EQ(pthread_attr_setstacksize(&attributes, stack_bytes()), 0);
+    pthread_t thread;
+    const auto start = [](void* argument) -> void* {
+        (*static_cast<Function*>(argument))();
+        return nullptr;
+    };
+    ASSERT_EQ(pthread_create(&thread, &attributes, start, &function), 0);
+    pthread_attr_destroy(&attributes);
+    ASSERT_EQ(pthread_join(thread, nullptr), 0);
+}
+
+/// The same pairs as those of a mesh, made and asked about.
+void ask_a_mesh(const std::vector<oracle::Pair>& pairs, const Options& options)
+{
+    std::vector<double> start, end, toi(pairs.size());
+    std::vector<std::int32_t> faces, edges;
+    std::vector<VertexFace> vertex_face;
+    std::vector<EdgeEdge> edge_edge;
+    for (const oracle::Pair& pair : pairs) {
+        const auto i = static_cast<std::int32_t>(vertex_face.size()), first = 4 * i;
+        for (std::size_t p = 0; p < 4; ++p) {
+            start.insert(start.end(), pair[p].begin(), pair[p].end());
+            end.insert(end.end(), pair[4 + p].begin(), pair[4 + p].end());
+        }
+        faces.insert(faces.end(), {first + 1, first + 2, first + 3});
+        edges.insert(edges.end(), {first, first + 1, first + 2, first + 3});
+        vertex_face.push_back({first, i});
+        edge_edge.push_back({2 * i, 2 * i + 1});
+    }
+    const std::size_t vertices = 4 * pairs.size();
+    const MovingMesh mesh{PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
+                          IndexView::rows(faces.data(), pairs.size(), 3), IndexView::rows(edges.data(), 2 * pairs.size(), 2)};
+    EXPECT_TRUE(time_of_impact(mesh, vertex_face, options, toi).ok());
+    EXPECT_TRUE(time_of_impact(mesh, edge_edge, options, toi).ok());
+    CollisionFreeStep step;
+    EXPECT_TRUE(collision_free_step(mesh, vertex_face, edge_edge, options, step).ok());
+}
+
+/// Every question there is, of hard pairs, so that lanes, the certified search and exact arithmetic all have a turn.
+void ask_everything(oracle::Kind kind, const PairBuffer& buffer, Options options)
+{
+    const PairView pairs = buffer.view();
+    std::vector<double> toi(pairs.size());
+    std::vector<Contact> contacts;
+    EXPECT_TRUE(time_of_impact(pair_kind(kind), pairs, options, toi).ok());
+    EXPECT_TRUE(find_contacts(pair_kind(kind), pairs, options, contacts).ok());
+    Contact earliest;
+    EXPECT_TRUE(earliest_contact(pair_kind(kind), pairs, options, earliest).ok());
+    EXPECT_EQ(answer(kind, pairs, options).toi, toi);
+    options.exact = true;
+    const Status settled = time_of_impact(pair_kind(kind), pairs, options, toi);
+    EXPECT_TRUE(settled.ok() || settled.error == Error::exact_unavailable);
+    options.exact = false;
+    options.minimum_separation = 1e-3;
+    EXPECT_TRUE(time_of_impact(pair_kind(kind), pairs, options, toi).ok());
+}
+
+void expect_enough(oracle::Kind kind, const std::vector<oracle::Pair>& pairs)
+{
+    const PairBuffer buffer = to_buffer(pairs);
+    for (const Isa isa : isas_to_test()) {
+        Options options;
+        options.isa = isa;
+        on_small_stack([&] { ask_everything(kind, buffer, options); });
+        on_small_stack([&] { ask_a_mesh(pairs, options); });
+    }
+}
+
+TEST(SmallStack, IsEnoughForEveryQuestionOnEveryIsa)
+{
+    for (const std::size_t threads : {1u, 2u}) {
+        const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, threads};
+        for (const std::string& family : families())
+            for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+                std::vector<oracle::Pair> pairs;
+                generate(family, kind, 5, amount(16), pairs);
+                expect_enough(kind, pairs);
+            }
+    }
+}
+
+/// The cubic is x(t) y(t) with roots at 2^-2098 and 2^-2097: exact arithmetic halves the step two thousand times to tell them apart.
+TEST(SmallStack, IsEnoughForRootsThatAreHardToTellApart)
+{
+    constexpr double least = std::numeric_limits<double>::denorm_min(), most = std::numeric_limits<double>::max();
+    expect_enough(oracle::Kind::vertex_face, {{{{0, 0, 0}, {least, 0, 0}, {0, least, 0}, {0, 0, 1},  //
+                                                {0, 0, 0}, {-most, 0, 0}, {0, -most / 2, 0}, {0, 0, 1}}}});
+}
+
+}  // namespace
+}  // namespace fastccd::testing
