@@ -2,8 +2,8 @@
 # Sets everything up, builds with warnings as errors, runs all tests.
 #
 #   tools/test.sh [ARGUMENT...]   arguments go to ctest
-#   tools/test.sh --all           and then: sanitizers, short fuzzing, races, an emulated x86-64 without AVX, an emulated arm64,
-#                                 clang 19
+#   tools/test.sh --all           and then: sanitizers, short fuzzing, races, an emulated x86-64 without AVX, one with AVX-512 if
+#                                 this one has none, an emulated arm64, clang 19
 source "$(dirname "$0")/setup.sh"
 
 all=false

@@ -45,9 +45,10 @@ test_races() {
   TSAN_OPTIONS="halt_on_error=1 history_size=7" "${fixed_addresses[@]}" "$races/tests/thread_sanitizer/race_test" --gtest_brief=1
 }
 
-# The same answers, bit by bit, as on this machine: without AVX (the wide kernels must not even be touched), and from NEON lanes.
+# The same answers, bit by bit, as on this machine: without AVX (the wide kernels must not even be touched), with AVX-512 if this one has
+# none, and from NEON lanes.
 test_other_machines() {
-  local here=$build/digest-here.txt pairs=60 arm64=$build-arm64
+  local here=$build/digest-here.txt pairs=60 arm64=$build-arm64 avx512=
   if [ "$(uname -m)" != x86_64 ]; then
     say "emulated machines: only from x86-64"
     return 0
@@ -60,6 +61,13 @@ test_other_machines() {
   qemu-x86_64-static -cpu Nehalem "$build/tests/fastccd_digest" $pairs | cmp - "$here"
   qemu-x86_64-static -cpu Nehalem "$build/tests/api_test" --gtest_brief=1
 
+  if [[ $("$build/tests/fastccd_digest" 1 2>&1) == *'lacks avx512'* ]]; then
+    say "emulated x86-64 with AVX-512, begun"
+    emulate_avx512 >"$build/avx512.txt" 2>&1 &
+    avx512=$!
+    trap 'kill '$avx512' 2>/dev/null' EXIT
+  fi
+
   build=$arm64 configure_and_build "-DCMAKE_TOOLCHAIN_FILE=$root/tools/arm64.cmake" -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON \
     -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- fastccd_digest api_test boxes_test c_interface_test \
     floating_point_environment_test separation_bits_test
@@ -71,6 +79,25 @@ test_other_machines() {
   qemu-aarch64-static "$arm64/tests/c_interface_test"
   qemu-aarch64-static "$arm64/tests/floating_point_environment_test" --gtest_brief=1 --gtest_filter='*OfFewPairs'
   "$root/tests/exported_symbols_test.sh" "$arm64/libfastccd.so" "$root/tests/exported_symbols.txt"
+
+  [ -n "$avx512" ] || return 0
+  say "emulated x86-64 with AVX-512"
+  wait "$avx512" || { cat "$build/avx512.txt" >&2; return 1; }
+  trap - EXIT
+  cat "$build/avx512.txt"
+}
+
+# Some minutes on one core, hence few pairs: the lanes' and the intervals' kernels, those with a separation, boxes, a small stack.
+emulate_avx512() {
+  local few=$build/digest-few.txt
+  "$build/tests/fastccd_digest" 10 >"$few"
+  exec timeout 1800 "$root/tests/emulated_avx512.sh" "$build-avx512" "$build/tests" "$few" <<'EOF'
+fastccd_digest 10 | cmp - digest-few.txt
+separation_bits_test --gtest_brief=1 --gtest_filter=*AnyLane*:*PowerOfTwo*:*Layouts*
+boxes_test --gtest_brief=1 --gtest_filter=*NotFinite*
+indexed_test --gtest_brief=1 --gtest_filter=*AnyStorage*
+small_stack_test --gtest_brief=1 --gtest_filter=*HardToTell*
+EOF
 }
 
 # The newest compiler of Debian 12 besides g++ 12, and clang 14 that test_sanitized_and_fuzz uses: the library, and the same answers.

@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# emulated_avx512.sh WORK PROGRAMS FILE...: runs the kernels for AVX-512 where the machine has none. WORK is a folder for what is made and
+# kept, PROGRAMS one with the tests' programs, and each FILE is put beside them. Commands are read from standard input, one a line.
+#
+# qemu 7.2 and valgrind 3.19 emulate no AVX-512. Bochs does, but only whole machines: so a kernel of Debian's is started in it, whose first file
+# system holds the programs and the libraries that they need. Some 40 s until it runs, and floating-point arithmetic about
+# 400 times as slow as here.
+source "$(dirname "$0")/../tools/setup.sh"
+work=$1 programs=$2
+shift 2
+mapfile -t commands
+install_packages bochs bochs-term busybox-static cpio isolinux syslinux-common xorriso
+system=$work/system disc=$work/disc serial=$work/serial.txt
+rm -rf "$system" "$disc" "$serial"
+mkdir -p "$system"/{bin,dev,proc} "$disc"
+
+if ! compgen -G "$work/boot/vmlinuz-*" >/dev/null; then
+  # Unpacked, not installed: that would set up this machine's own start. Lists of packages from long ago name files that are gone.
+  download_kernel() {
+    local package
+    package=$(apt-cache depends linux-image-cloud-amd64 | sed -n 's/^ *Depends: \(linux-image-[^ ]*\)$/\1/p')
+    (cd "$work" && apt-get download -qq -o APT::Sandbox::User=root "$package")
+  }
+  download_kernel || { as_root apt-get update -qq && download_kernel; }
+  dpkg-deb --fsys-tarfile "$work"/linux-image-*.deb | tar -x -C "$work" --wildcards './boot/vmlinuz-*'
+  rm "$work"/linux-image-*.deb
+fi
+cp "$work"/boot/vmlinuz-* "$disc/vmlinuz"
+
+cp /bin/busybox "$system/bin"
+cp "$@" "$system"
+for command in "${commands[@]}"; do
+  program=$programs/${command%% *}
+  cp "$program" "$system"
+  ldd "$program" | grep -o '/[^ ]*' | while read -r library; do install -D "$library" "$system$library"; done
+done
+{
+  echo '#!/bin/busybox sh'
+  echo '/bin/busybox --install /bin; mount -t proc proc /proc; mount -t devtmpfs dev /dev; export GTEST_COLOR=no; failed=0'
+  echo 'for wanted in avx512f avx512cd avx512dq avx512bw; do grep -qw $wanted /proc/cpuinfo || { echo "the emulated processor lacks $wanted"; failed=1; }; done'
+  for command in "${commands[@]}"; do
+    printf 'echo %q; set -o pipefail; ./%s || { echo "exit $?"; failed=1; }\n' "$command" "$command"
+  done
+  echo '[ $failed = 0 ] && echo "everything passed"; sleep 1; poweroff -f'  # a second for what is under way to the serial port
+} >"$system/init"
+chmod +x "$system/init"
+(cd "$system" && find . | cpio -o -H newc --quiet) >"$disc/system"
+
+# Bochs 2.7 tells the size of the standard format of registers saved where the kernel asks for that of the compacted one; the kernel
+# would take that for a fault and leave AVX alone.
+cat >"$disc/isolinux.cfg" <<'EOF'
+DEFAULT tests
+LABEL tests
+ KERNEL /vmlinuz
+ INITRD /system
+ APPEND console=ttyS0 quiet mitigations=off clearcpuid=xsavec,xsaves
+EOF
+cp /usr/lib/ISOLINUX/isolinux.bin /usr/lib/syslinux/modules/bios/ldlinux.c32 "$disc"
+xorriso -as mkisofs -quiet -o "$work/disc.iso" -b isolinux.bin -c boot.cat -no-emul-boot -boot-load-size 4 -boot-info-table "$disc" 2>/dev/null
+
+cat >"$work/bochsrc" <<EOF
+display_library: term
+cpu: model=corei7_skylake_x, ips=100000000
+memory: guest=512, host=512
+romimage: file=/usr/share/bochs/BIOS-bochs-latest
+vgaromimage: file=/usr/share/bochs/VGABIOS-lgpl-latest
+ata0-master: type=cdrom, path=$work/disc.iso, status=inserted
+boot: cdrom
+com1: enabled=1, mode=file, dev=$serial
+sound: waveoutdrv=dummy, waveindrv=dummy, midioutdrv=dummy
+log: $work/bochs.log
+EOF
+# Debian's Bochs waits in its debugger until it is told to continue, and wants a terminal.
+echo continue >"$work/debugger"
+script -qec "TERM=linux bochs -q -rc '$work/debugger' -f '$work/bochsrc'" /dev/null >"$work/screen" 2>&1 </dev/null || true
+tr -d '\r' <"$serial"
+grep -q '^everything passed' "$serial" || { echo "failed in the emulated machine; what it printed is in $serial" >&2; exit 1; }
