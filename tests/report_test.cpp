@@ -301,6 +301,22 @@ TEST(Report, InterruptedLeavesWhatWasThere)
     EXPECT_EQ(read_text(directory / "old/report.html"), "old");
 }
 
+TEST(Report, NamesUnusableDataBeforeAnythingIsMeasured)
+{
+    for (const std::string file : {"scenes/falls/frame_1.obj", "hardcases/pairs_vf.npy", "queries/some/vertex-face/data.csv"}) {
+        const ScratchDirectory directory;
+        const std::filesystem::path path = directory / ("data/" + file);
+        std::filesystem::create_directories(path.parent_path());
+        directory.write("data/" + file, "nothing of the kind");
+        if (path.extension() == ".obj") directory.write("data/scenes/falls/frame_0.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        const Outcome outcome = run({"report", "--data", directory / "data", "--out", directory / "out"});
+        EXPECT_EQ(outcome.status, 1) << file;
+        EXPECT_NE(outcome.error.find(file), std::string::npos) << outcome.error;
+        EXPECT_EQ(outcome.error.find("1 of 5"), std::string::npos) << outcome.error;
+        EXPECT_EQ(directory.names(), std::vector<std::string>{"data"});
+    }
+}
+
 TEST(Report, NamesWhatIsWrong)
 {
     const ScratchDirectory directory;

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <filesystem>
+#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -54,6 +56,14 @@ HardSet read(testing::QuerySet&& data, std::size_t pairs)
     HardSet set{data.name, "data", pair_kind(data.kind), std::move(data.pairs), {}};
     set.truth = {std::vector<char>(data.truth.begin(), data.truth.end()), std::move(data.t_lo), std::move(data.t_hi)};
     return set;
+}
+
+std::vector<testing::QuerySet> public_sets(const std::filesystem::path& data)
+{
+    std::vector<testing::QuerySet> sets;
+    if (std::filesystem::is_directory(data / "hardcases")) sets = testing::load_hardcases(data);
+    if (std::filesystem::is_directory(data / "queries")) std::ranges::move(testing::load_queries(data), std::back_inserter(sets));
+    return sets;
 }
 
 /// What is wrong without and with the exact verdict, and what it costs on one thread.
@@ -126,16 +136,13 @@ Json json(const HardSet& set, std::size_t repeats)
 
 }  // namespace
 
+void check_hard_cases(const std::filesystem::path& data) { static_cast<void>(public_sets(data)); }
+
 Json hard_cases(const Plan& plan, ReportProgress& progress)
 {
     const std::vector<std::string>& families = testing::families();
     std::vector<testing::QuerySet> data;
-    if (plan.data) {
-        if (std::filesystem::is_directory(*plan.data / "hardcases")) data = testing::load_hardcases(*plan.data);
-        if (std::filesystem::is_directory(*plan.data / "queries")) {
-            for (testing::QuerySet& set : testing::load_queries(*plan.data)) data.push_back(std::move(set));
-        }
-    }
+    if (plan.data) data = public_sets(*plan.data);
     const std::size_t total = kinds.size() * families.size() + data.size();
     std::size_t done = 0;
     Json result{{"tolerance", tolerance},

@@ -4,6 +4,7 @@
 // compare() in truth.hpp. All parts throw Interrupted after a signal.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -28,6 +29,11 @@ namespace fastccd::tools::report {
 
 /// Threads, and numbers of pairs.
 [[nodiscard]] Json scaling(const Plan& plan, ReportProgress& progress);
+
+/// Read the public data that hard_cases() and scenes() will use, and throw if any of it cannot be used: that is known before anything
+/// is measured.
+void check_hard_cases(const std::filesystem::path& data);
+void check_scenes(const std::filesystem::path& data);
 
 // --- what several parts do ---
 

@@ -68,7 +68,11 @@ Json measure(const ReportOptions& options)
     Plan plan;
     plan.quick = options.quick;
     plan.pairs = options.pairs != 0 ? options.pairs : options.quick ? 1'000'000 : 10'000'000;
-    if (!options.data.empty()) plan.data = options.data;
+    if (!options.data.empty()) {
+        plan.data = options.data;
+        check_hard_cases(*plan.data);
+        check_scenes(*plan.data);
+    }
     ReportProgress progress{!options.quiet};
     Json json{{"format", 1},
               {"machine", machine()},

@@ -174,6 +174,11 @@ Json paper_scenes()
 
 }  // namespace
 
+void check_scenes(const fs::path& data)
+{
+    for (const Scene& scene : public_scenes(data)) scene.for_each_step([](const Step&) { check_interrupt(); });
+}
+
 Json scenes(const Plan& plan, ReportProgress& progress)
 {
     std::vector<Scene> all{generated_scene(plan)};
