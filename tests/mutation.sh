@@ -222,6 +222,8 @@ mutant 'totals: invalid pairs are proven' $tile 's/proven - invalid/proven/' api
 
 # ---- The exact verdict
 mutant 'exact: 0 within the first leaf' scalar/exact_contact.cpp 's/return std::ldexp\(1\.0, -static_cast<int>\(finer\)\)/return 0.0/' exact_test
+mutant 'exact: roots in the middle left out' scalar/binary_form.cpp 's/mpz_odd_p\(part\.index\.get_mpz_t\(\)\) != 0 && //; s/here\.at_start\(\) == 0\) found/part.depth > 64 \&\& here.at_start() == 0) found/' exact_test
+mutant 'exact: second halves first' scalar/binary_form.cpp 's/(waiting\.push_back\(second_half\(part\)\);)\s*(waiting\.push_back\(first_half\(part\)\);)/$2 $1/' exact_test
 
 # ---- The caller's floating-point environment
 mutant 'environment: as the caller left it' scheduler/guarded.hpp 's/const DefaultFloatingPoint defaults;//' floating_point_environment_test
