@@ -18,6 +18,7 @@ PairToi single(PairKind kind, std::span<const Point, 4> x0, std::span<const Poin
     answer.status = guarded([&] {
         Options search_alone = options;
         search_alone.reference = true;
+        search_alone.isa = Isa::scalar;  // whatever was asked for
         Job job = no_job(kind);
         if (const Status status = prepare(kind, PairSource{nullptr, {}, 1}, search_alone, false, job); !status.ok()) return status;
 

@@ -123,8 +123,8 @@ Status prepare(PairKind kind, const PairSource& source, const Options& options, 
     if (options.exact && options.minimum_separation > 0.0) return {Error::exact_separation};
     if (options.exact && !scalar::exact_contact_available()) return {Error::exact_unavailable};
     const KernelTable* kernels = nullptr;
-    if (!options.reference)
-        if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
+    if (const Status status = choose_kernels(options.isa, kernels); !status.ok()) return status;
+    if (options.reference) kernels = nullptr;
     job = {kind, source, SearchParameters{options.tolerance, options.t_max, count_roots,
                                             SeparationParameters{options.minimum_separation, options.distance_tolerance}},
            kernels, options.exact};

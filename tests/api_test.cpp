@@ -78,6 +78,9 @@ TEST(Api, HonoursTheEnvironmentUnlessToldOtherwise)
     EXPECT_EQ(answer(oracle::Kind::vertex_face, interleaved(pairs), {}).summary.isa, Isa::scalar);
     setenv("FASTCCD_ISA", "mmx", 1);
     EXPECT_EQ(error_of({}), Error::bad_isa_environment);
+    Options reference;
+    reference.reference = true;
+    EXPECT_EQ(error_of(reference), Error::bad_isa_environment);
     Options explicitly;
     explicitly.isa = Isa::scalar;
     EXPECT_EQ(error_of(explicitly), Error::none);

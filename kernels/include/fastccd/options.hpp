@@ -21,7 +21,7 @@ enum class Isa : std::uint8_t {
     scalar,     ///< One pair at a time, in plain double.
     sse2,       ///< 2 pairs at a time.
     avx2,       ///< 4 pairs at a time.
-    avx512,     ///< 8 pairs at a time (needs AVX-512 F, DQ and BW).
+    avx512,     ///< 8 pairs at a time (needs AVX-512 F, CD, DQ and BW).
     neon,       ///< 2 pairs at a time (arm64).
 };
 
@@ -39,15 +39,16 @@ struct Options {
     /// Settle by rational arithmetic every contact that rounding leaves possible but not proven, or does not locate
     /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50
     /// at least) and a rounding (2^-51), and 0 for contact at t = 0 alone (or before 2^-1071). Costs allocations and some ten to
-    /// some hundred microseconds for each such pair, milliseconds for a few, and up to 0.2 s if its coordinates' exponents spread
-    /// over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
+    /// some hundred microseconds for each such pair, milliseconds for a few, and up to a second (the longest found) if its
+    /// coordinates' exponents spread over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
-    /// which they are as close; pairs within d at the start have toi 0 (Contact::at_start), all others in contact a positive one.
+    /// which they are as close; pairs within d at the start have toi 0 (Contact::at_start), all others in contact a positive one
+    /// (or 0, as if at the start, if that time is below 2^-1071).
     /// Finite, in units of the coordinates. Not together with `exact`; contact roots are not counted.
     double minimum_separation = 0.0;
     /// With minimum_separation d: a pair counts as in contact once its distance is at most (1 + distance_tolerance) d
-    /// (rounding: README), which keeps the work bounded for pairs that graze. It is this, not `tolerance`, that says how early
+    /// (rounding, and what a cap on the work leaves undecided: README), which keeps the work bounded for pairs that graze. It is this, not `tolerance`, that says how early
     /// toi may be. Finite, at least 0.
     double distance_tolerance = 1e-6;
 };
@@ -58,7 +59,7 @@ struct Contact {
     double toi;        ///< Lower bound of its first time of contact, in [0, t_max].
     /// There is contact, certainly: the cubic changes sign beyond rounding around toi, within 2^-6 of the step, while inclusion
     /// holds, or Options::exact has settled it; with a minimum separation, the pair certainly comes as close at toi or later.
-    /// Otherwise contact is not excluded, to within rounding or distance_tolerance.
+    /// Otherwise contact is not excluded, to within rounding, distance_tolerance or a cap on the work.
     bool proven = false;
     /// With a minimum separation: the pair is not certainly farther apart than that at t = 0.
     bool at_start = false;

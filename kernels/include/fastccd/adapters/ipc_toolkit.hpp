@@ -54,7 +54,7 @@ public:
                                  tolerance, tmax, toi);
     }
 
-    /// A distance: how much farther than min_distance the two may still be apart at toi, rounding aside.
+    /// A distance: how much farther than min_distance the two may still be apart at toi, rounding and a cap on the work (README) aside.
     double tolerance = 1e-6;
 
 private:

@@ -6,7 +6,8 @@
 // code that calls ticcd::vertexFaceCCD and ticcd::edgeEdgeCCD compiles unchanged. What differs:
 //
 // - Rounding needs no bounding box of the scene: `err` is not looked at. Work is bounded without `max_itr`, and the
-//   tolerance is always reached, to within rounding: output_tolerance is the tolerance.
+//   tolerance is reached, to within rounding, but for pairs that reach the cap on the work (README, Minimum separation and
+//   Accuracy): output_tolerance is the tolerance.
 // - `no_zero_toi` needs no second search: a pair that is apart at t = 0, beyond rounding, has toi > 0 anyway. toi = 0 means
 //   contact at the start, to within rounding.
 // - With a minimum separation `ms`, toi = 0 means that the pair is within it at the start. One that is negative, a t_max
@@ -28,7 +29,7 @@ inline constexpr Scalar DEFAULT_CCD_DISTANCE_TOL = 1e-6;
 enum class CCDRootFindingMethod { DEPTH_FIRST_SEARCH, BREADTH_FIRST_SEARCH };
 
 /// True if the edges a and b come within `ms` of each other in [0, t_max]. toi: lower bound of the first time, at which they are
-/// apart by less than `ms` plus `tolerance`, a distance; +infinity if they do not come so close.
+/// apart by less than `ms` plus `tolerance`, a distance (see above); +infinity if they do not come so close.
 inline bool edgeEdgeCCD(const Vector3& ea0_t0, const Vector3& ea1_t0, const Vector3& eb0_t0, const Vector3& eb1_t0, const Vector3& ea0_t1,
                         const Vector3& ea1_t1, const Vector3& eb0_t1, const Vector3& eb1_t1, const Array3& /*err*/, const Scalar ms,
                         Scalar& toi, const Scalar tolerance, const Scalar t_max, const long /*max_itr*/, Scalar& output_tolerance,
