@@ -48,8 +48,8 @@ struct Options {
     /// Finite, in units of the coordinates. Not together with `exact`; contact roots are not counted.
     double minimum_separation = 0.0;
     /// With minimum_separation d: a pair counts as in contact once its distance is at most (1 + distance_tolerance) d
-    /// (rounding, and what a cap on the work leaves undecided: README), which keeps the work bounded for pairs that graze. It is this, not `tolerance`, that says how early
-    /// toi may be. Finite, at least 0.
+    /// (rounding, and what a cap on the work leaves undecided: README), which keeps the work bounded for pairs that graze. It is
+    /// this, not `tolerance`, that says how early toi may be. Finite, at least 0.
     double distance_tolerance = 1e-6;
 };
 

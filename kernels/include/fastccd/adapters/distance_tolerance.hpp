@@ -54,9 +54,9 @@ private:
 
 /// True if the pair touches within [0, t_max], or comes within the minimum separation; toi is then a lower bound of the first
 /// time, otherwise +infinity. At toi the two are apart by less than the minimum separation plus `distance`, to within
-/// rounding, unless the pair reaches the cap on the work (README, Minimum separation and Accuracy). These interfaces have no other way to name what cannot be answered: throws std::invalid_argument for a minimum
-/// separation that is negative or not finite, t_max outside [0, 1], a distance that is not positive, and coordinates that are
-/// not finite.
+/// rounding, unless the pair reaches the cap on the work (README, Minimum separation and Accuracy). These interfaces have no other
+/// way to name what cannot be answered: throws std::invalid_argument for a minimum separation that is negative or not finite, t_max
+/// outside [0, 1], a distance that is not positive, and coordinates that are not finite.
 inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
 {
     if (!is_finite(minimum_separation) || minimum_separation < 0.0)
