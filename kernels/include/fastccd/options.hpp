@@ -39,7 +39,7 @@ struct Options {
     /// Settle by rational arithmetic every contact that rounding leaves possible but not proven, or does not locate
     /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50
     /// at least) and a rounding (2^-51), and 0 for contact at t = 0 alone (or before 2^-1071). Costs allocations and some ten to
-    /// some hundred microseconds for each such pair, milliseconds for a few, and up to a second (the longest found) if its
+    /// some hundred microseconds for each such pair, milliseconds for a few, and about a second (the longest found) if its
     /// coordinates' exponents spread over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
