@@ -23,11 +23,7 @@ namespace {
 /// Frames of instrumented code are several times as large. Some systems give no thread less than PTHREAD_STACK_MIN.
 std::size_t stack_bytes()
 {
-#if defined(FASTCCD_SANITIZED)
-    constexpr std::size_t promised = 1024 * 1024;
-#else
-    constexpr std::size_t promised = 64 * 1024;
-#endif
+    constexpr std::size_t promised = (sanitized ? 1024 : 64) * 1024;
     return std::max(promised, static_cast<std::size_t>(PTHREAD_STACK_MIN));
 }
 
@@ -75,7 +71,7 @@ void ask_a_mesh(const std::vector<oracle::Pair>& pairs, const Options& options)
     EXPECT_TRUE(collision_free_step(mesh, vertex_face, edge_edge, options, step).ok());
 }
 
-/// Every question there is, of hard pairs, so that lanes, the certified search and exact arithmetic all have a turn.
+/// Every question about packed pairs, of hard ones, so that lanes, the certified search and exact arithmetic all have a turn.
 void ask_everything(oracle::Kind kind, const PairBuffer& buffer, Options options)
 {
     const PairView pairs = buffer.view();
