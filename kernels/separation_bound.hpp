@@ -46,6 +46,13 @@ struct SeparationBounds {
         return ((kind == PairKind::vertex_face ? rho + 7 : 2 * rho + 16) + slack) * u;
     }
 
+    /// A coefficient of a height n(s) . r_i(s), n of degree 3 and taken as exact (scalar/following_direction.hpp); times the same
+    /// coefficient of S(s). A product as in height_at: rho + 6; three times it, and the sum of two: rho + 8. Differences: 2 rho + 18.
+    [[nodiscard]] FASTCCD_INLINE constexpr double height_following(PairKind kind) const
+    {
+        return ((kind == PairKind::vertex_face ? rho + 8 : 2 * rho + 18) + slack) * u;
+    }
+
     /// A gap along a coordinate axis at an end; times the extent along it. Two components, and their difference: 2 rho + 2.
     [[nodiscard]] FASTCCD_INLINE constexpr double axis() const { return (2 * rho + 2 + slack) * u; }
 
@@ -69,6 +76,8 @@ struct SeparationParameters {
 
     /// Computed unit vectors are longer than 1 by at most 5 u: the square errs by 3 u, its root by 2.5 u, the
     /// reciprocal and the product with it add 2 u. The multiplication here, and sums of a threshold and a bound, add 3 u.
+    /// Where a vector is no unit vector (scalar/following_direction.hpp), its computed length is short by 4 u at most, and the
+    /// product with it and sums of such thresholds add 5 u.
     FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double distance_tolerance = 0.0)
         : distance{d}, tolerance{distance_tolerance}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance},
           aim{d + d * (0.5 * tolerance)}, certain{d * (1.0 - 0x1p-49)}

@@ -1,10 +1,12 @@
-// The steps of separation_steps.hpp for one pair, which is scaled before where it is beyond the lanes' range.
+// The steps of separation_steps.hpp for one pair, which is scaled before where it is beyond the lanes' range; and, for a pair that
+// takes many, directions that follow the primitives in between.
 #include <separation_search.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include <following_direction.hpp>
 #include <scaling.hpp>
 #include <separation_steps.hpp>
 
@@ -36,6 +38,28 @@ RelativeMotion<double> scaled_motion(const double* coordinates, SearchParameters
     return r;
 }
 
+/// A stretch of time is not shortened below this: next to time 1 a shorter one might be none.
+constexpr double shortest_stretch = 0x1p-50;
+
+/// From where the last look reaches, as far as directions that follow the primitives prove a distance above d. `stretch`: how far
+/// the next one is asked; doubled and halved with success. Each counts as a look. True if they prove it to the end.
+template <PairKind kind>
+bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationParameters& wanted, const SeparationBounds& bounds)
+{
+    pair.time = past_window(pair, pair.high);
+    bool farther = true;
+    while (farther && pair.time < 1.0 && pair.looks < most_looks) {
+        const double end = std::min(pair.time + stretch, 1.0);
+        farther = FollowingDirection<kind>{pair.r, pair.time, end}.farther(pair.extents, wanted, bounds);
+        pair.looks += 1.0;
+        if (farther) pair.time = past_window(pair, end);
+        stretch = farther ? 2.0 * stretch : std::max(0.5 * stretch, shortest_stretch);
+    }
+    pair.at = pair.time;
+    pair.purpose = going_on;
+    return 1.0 <= pair.time;
+}
+
 template <PairKind kind>
 SearchResult search(const double* coordinates, SearchParameters parameters, double limit)
 {
@@ -50,12 +74,14 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     constexpr double never = std::numeric_limits<double>::infinity();
     Extents<double> same;
     const SeparationBounds bounds{parameters.bounds.rho};
+    double stretch = 1.0;
     if (farther_along_axis<kind>(pair.r, parameters.separation, bounds, same).value) return {never, Proof::none, 0, 0};
     if (first_look<kind>(pair, parameters).value) return {never, Proof::none, 0, 1};
     while (true) {
         const StepOutcome<double> outcome = step<kind>(pair, parameters, limit);
+        const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds);
         const auto looks = static_cast<unsigned>(pair.looks);
-        if (outcome.farther.value) return {never, Proof::none, 0, looks};
+        if (outcome.farther.value || followed) return {never, Proof::none, 0, looks};
         if (outcome.contact.value)
             return {parameters.time(pair.time), outcome.proven.value ? Proof::leaf : Proof::none, 0, looks};
     }

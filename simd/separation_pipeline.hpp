@@ -6,7 +6,7 @@
 //                  farther                         farther
 //
 // Lanes take the steps of separation_steps.hpp, in the same operations as the scalar search; they leave to it pairs out
-// of range alone. A pair that needs another step goes back to the end of [advancing], from which the next batch is taken,
+// of range, and those that take too many steps. A pair that needs another step goes back to the end of [advancing], from which the next batch is taken,
 // so that batches stay full until the queue runs dry.
 #pragma once
 
@@ -127,7 +127,9 @@ private:
                 const StepOutcome<L> outcome = step<kind>(record, parameters, limit);
                 const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
                 if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
-                lanes &= ~(contact | Lane<L>::bits(outcome.farther));
+                const unsigned left = lanes & Lane<L>::bits(outcome.left);
+                if (left != 0) leave_undecided(scratch, record.pair, left);
+                lanes &= ~(contact | left | Lane<L>::bits(outcome.farther));
                 // Moving pairs to fill a batch costs about a fifth of a step.
             } while (5 * static_cast<unsigned>(__builtin_popcount(lanes)) > 4 * width);
             if (lanes != 0) push(scratch.advancing, lanes, record);

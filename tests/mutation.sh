@@ -236,6 +236,14 @@ mutant 'adapters: separation to the default tolerance' kernels/include/fastccd/a
 mutant 'lists grow by what is needed alone' scheduler/fastccd.cpp 's/std::max\(needed, 2 \* list\.capacity\(\)\)/needed/' api_test
 
 mutant 'nothing more after the cap' scalar/certified_search.hpp 's/most_extensions = 16/most_extensions = 0/' exact_test
+following=scalar/following_direction.hpp
+mutant 'separation: heights while following = 0' $separation 's/vertex_face \? rho \+ 8 : 2 \* rho \+ 18\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test
+mutant 'separation: nothing follows' scalar/separation_search.cpp 's/outcome\.left\.value && follow/false \&\& follow/' separation_test separation_bits_test
+mutant 'separation: lanes follow nothing' kernels/separation_steps.hpp 's/most_lane_looks = 64/most_lane_looks = 1e9/' separation_test separation_bits_test
+mutant 'separation: lanes keep what is to be followed' simd/separation_pipeline.hpp 's/if \(left != 0\) leave_undecided\(scratch, record\.pair, left\);//' separation_bits_test
+mutant 'separation: following, middle not asked' $following 's/k < 5; \+\+k\) all/k < 5; k += 2) all/' error_bounds_test
+mutant 'separation: following, d not asked for' $following 's/parameters\.threshold \* length\(v\) \+/0.0 * length(v) +/' error_bounds_test
+mutant 'separation: following goes over the window' scalar/separation_search.cpp 's/pair\.time = past_window\(pair, end\)/pair.time = past_window(pair, end + stretch)/' separation_test
 mutant 'separation: normals that vanish' kernels/separating_direction.hpp 's/less\(broadcast<L>\(smallest_square\), normal_square\) &\s*//' separation_test
 mutant 'separation: corners from the far end' kernels/separating_direction.hpp 's/less\(squares\[j\], squares\[i\]\)/less(squares[i], squares[j])/' separation_test
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "followed_pairs.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "test_data.hpp"
@@ -81,6 +82,26 @@ TEST(SeparationBits, IsasOnMadePairs)
                     expect_same(expected, found, std::string(kind_name(kind)) + ' ' + name(isa) + " d " + std::to_string(d));
                 }
             }
+    }
+}
+
+/// Lanes leave them to the scalar search, wherever they stand among others.
+TEST(SeparationBits, FollowedPairs)
+{
+    for (const auto& [kind, d, followed] : followed_pairs) {
+        std::vector<oracle::Pair> pairs = mixed_pairs(kind, 125, 11);
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < pairs.size(); i += 3 + i % 4, ++count) pairs[i] = followed;
+        const PairBuffer buffer = to_buffer(pairs);
+        const Answer expected = reference(kind, buffer.view(), options_for(d));
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            EXPECT_TRUE(pairs[i] != followed || expected.toi[i] == std::numeric_limits<double>::infinity()) << i;
+        for (const Isa isa : isas_to_test()) {
+            const Answer found = answer(kind, buffer.view(), options_for(d, isa));
+            EXPECT_GE(found.summary.scalar_pairs, count);
+            EXPECT_LT(found.summary.scalar_pairs, count + pairs.size() / 4);
+            expect_same(expected, found, std::string(kind_name(kind)) + ' ' + name(isa) + " followed pairs");
+        }
     }
 }
 

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <following_direction.hpp>
 #include <separation_certificate.hpp>
 
 #include "../amount.hpp"
+#include "../oracle/exact_separation.hpp"
 #include "exact_number.hpp"
 #include "measured_bound.hpp"
 
@@ -89,6 +91,60 @@ TEST(SeparationBounds, SumsOfHeights)
     });
 }
 
+/// Four times the coefficients of a height along a cubic n(s), or of S(s).
+template <class Number>
+struct FourTimes {
+    Number c[5];
+
+    template <class Product>
+    static FourTimes of(Product product)
+    {
+        const Number two{2.0}, three{3.0}, four{4.0};
+        return {{four * product(0, 0), product(0, 1) + three * product(1, 0), two * (product(1, 1) + product(2, 0)),
+                 three * product(2, 1) + product(3, 0), four * product(3, 1)}};
+    }
+
+    friend FourTimes operator-(const FourTimes& p, const FourTimes& q)
+    {
+        FourTimes difference{p};
+        for (int k = 0; k < 5; ++k) difference.c[k] = p.c[k] - q.c[k];
+        return difference;
+    }
+};
+
+template <PairKind kind>
+double following_ratio(const Input& in)
+{
+    using Direction = scalar::FollowingDirection<kind>;
+    const Computed c{in};
+    const Direction direction{c.r, in.a, in.b};
+    const ExactRelativeMotion motion{in.x.data(), in.t_max};
+    std::vector<FourTimes<Exact>> truth;
+    portable::for_each_height<kind>(
+        [&](int i) {
+            return FourTimes<Exact>::of([&](int k, int end) {
+                return dot(exact(direction.coefficient(k)), motion.at(static_cast<std::size_t>(i), Exact(end == 0 ? in.a : in.b)));
+            });
+        },
+        [&](const FourTimes<Exact>& height) { truth.push_back(height); });
+    const double bound = SeparationBounds{c.bounds.rho}.height_following(kind);
+    const auto spreads = FourTimes<double>::of([&](int k, int) { return spread(direction.coefficient(k), c); });
+    auto next = truth.begin();
+    double worst = 0;
+    direction.visit_heights([&](const typename Direction::Coefficients& height) {
+        for (int k = 0; k < 5; ++k)
+            if (spreads.c[k] > 0) worst = std::max(worst, (next->c[k] - Exact(4.0) * Exact(height.c[k])).magnitude_in(bound * spreads.c[k]));
+        ++next;
+    });
+    return worst;
+}
+
+TEST(SeparationBounds, HeightsWhileFollowing)
+{
+    expect_bound("height_following, vertex-face", 0.02, following_ratio<PairKind::vertex_face>);
+    expect_bound("height_following, edge-edge", 0.02, following_ratio<PairKind::edge_edge>);
+}
+
 TEST(SeparationBounds, UnitVectors)
 {
     const auto excess = [](const Vector3<double>& n) { return (dot(exact(n), exact(n)) - Exact(1.0)).in(2 * 5 * ErrorBounds::u); };
@@ -132,7 +188,7 @@ template <PairKind kind>
 void expect_certificates_hold(std::uint64_t seed)
 {
     Adversary adversary{seed};
-    std::size_t ends = 0, whole = 0, turning = 0;
+    std::size_t ends = 0, whole = 0, turning = 0, following = 0;
     for (std::size_t k = 0; k < amount(40000); ++k) {
         constexpr double t_maxima[] = {1.0, 0.7, 1e-6};
         const Input in = adversary.input(t_maxima[k % 3], -4, 4);
@@ -166,11 +222,19 @@ void expect_certificates_hold(std::uint64_t seed)
                 ASSERT_TRUE(holds) << w << ' ' << d << ' ' << text(in);
             }
         }
+        if (in.t_max == 1.0 && in.a < in.b && scalar::FollowingDirection<kind>{c.r, in.a, in.b}.farther(extents, wanted, bounds)) {
+            ++following;
+            oracle::Pair pair;
+            for (std::size_t i = 0; i < 24; ++i) pair[i / 3][i % 3] = in.x[i];
+            const auto oracle_kind = kind == PairKind::vertex_face ? oracle::Kind::vertex_face : oracle::Kind::edge_edge;
+            ASSERT_EQ(oracle::farther_throughout(oracle_kind, pair, d, in.a, in.b), oracle::Farther::certainly) << d << ' ' << text(in);
+        }
     }
-    std::printf("%s: %zu reaches with an end inside, %zu without, %zu intervals while turning\n",
-                kind == PairKind::vertex_face ? "vertex-face" : "edge-edge", ends, whole, turning);
+    std::printf("%s: %zu reaches with an end inside, %zu without, %zu intervals while turning, %zu while following\n",
+                kind == PairKind::vertex_face ? "vertex-face" : "edge-edge", ends, whole, turning, following);
     EXPECT_GT(ends, amount(5000));
     EXPECT_GT(turning, amount(500));
+    EXPECT_GT(following, amount(1000));
 }
 
 TEST(SeparationBounds, CertificatesHold)
