@@ -4,6 +4,10 @@
 //
 // A leaf in which contact cannot be proven either is halved further, below E_tol: this removes near misses
 // that are apart by more than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound.
+//
+// Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
+// cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation
+// goes on from there, without any separation. It tells apart what computed positions tell apart.
 #include <certified_search.hpp>
 
 #include <limits>
@@ -11,6 +15,7 @@
 #include <contact_roots.hpp>
 #include <pair_polynomials.hpp>
 #include <scaling.hpp>
+#include <separation_search.hpp>
 
 namespace fastccd::scalar {
 
@@ -24,11 +29,18 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
     if (pair.apart()) return result;
 
     LeafSearch<kind> leaves{pair, parameters, lanes};
-    const double first = leaves.first_contact();
+    double first = leaves.first_contact();
     result.intervals = leaves.intervals();
     if (first > 1.0) return result;
-    result.toi = parameters.time(first);
     result.proof = leaves.proof_of_contact(first);
+    if (result.proof != Proof::leaf && leaves.in_doubt(first)) {
+        const double apart = apart_until(pair.coefficients(), parameters, first);
+        if (apart > 1.0) return {result.toi, Proof::none, 0, result.intervals};
+        // What is proven around `first` is not before `apart`, hence no farther from it.
+        if (result.proof == Proof::none && apart > first) result.proof = leaves.proof_nearby(apart);
+        first = apart;
+    }
+    result.toi = parameters.time(first);
     if (parameters.count_roots) result.roots = count_contact_roots(pair, parameters);
     return result;
 }

@@ -71,6 +71,12 @@ public:
         if (s == 0.0 && zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
         // At the cap, contact may have been found in an interval that is wider than a leaf.
         if (contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
+        return proof_nearby(s);
+    }
+
+    /// The same for any s: contact for certain in some interval around s.
+    [[nodiscard]] Proof proof_nearby(double s) const
+    {
         for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
             const Interval around{std::max(s - reach, 0.0), std::min(s + reach, 1.0)};
             if (!pair.included(around)) return Proof::none;  // nor, but for rounding, in anything wider
@@ -78,6 +84,10 @@ public:
         }
         return Proof::none;
     }
+
+    /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
+    /// that the pair is as close as computed positions can tell.
+    [[nodiscard]] bool in_doubt(double s) const { return search.intervals >= most_intervals_in_leaf || !pair.well_shaped(s); }
 
     [[nodiscard]] unsigned intervals() const { return search.intervals; }
 

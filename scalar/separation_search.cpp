@@ -60,6 +60,23 @@ bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationPar
     return 1.0 <= pair.time;
 }
 
+constexpr double never = std::numeric_limits<double>::infinity();
+
+/// From where the pair is on its way; the time in units of t_max.
+template <PairKind kind>
+SearchResult walk(SeparationRecord<double>& pair, const SearchParameters& parameters, double limit)
+{
+    const SeparationBounds bounds{parameters.bounds.rho};
+    double stretch = 1.0;
+    while (true) {
+        const StepOutcome<double> outcome = step<kind>(pair, parameters, limit);
+        const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds);
+        const auto looks = static_cast<unsigned>(pair.looks);
+        if (outcome.farther.value || followed) return {never, Proof::none, 0, looks};
+        if (outcome.contact.value) return {pair.time, outcome.proven.value ? Proof::leaf : Proof::none, 0, looks};
+    }
+}
+
 template <PairKind kind>
 SearchResult search(const double* coordinates, SearchParameters parameters, double limit)
 {
@@ -70,21 +87,43 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
         pair.r = scaled_motion(coordinates, parameters);
         pair.extents = extents(pair.r);
     }
-
-    constexpr double never = std::numeric_limits<double>::infinity();
     Extents<double> same;
-    const SeparationBounds bounds{parameters.bounds.rho};
-    double stretch = 1.0;
-    if (farther_along_axis<kind>(pair.r, parameters.separation, bounds, same).value) return {never, Proof::none, 0, 0};
+    if (farther_along_axis<kind>(pair.r, parameters.separation, SeparationBounds{parameters.bounds.rho}, same).value)
+        return {never, Proof::none, 0, 0};
     if (first_look<kind>(pair, parameters).value) return {never, Proof::none, 0, 1};
-    while (true) {
-        const StepOutcome<double> outcome = step<kind>(pair, parameters, limit);
-        const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds);
-        const auto looks = static_cast<unsigned>(pair.looks);
-        if (outcome.farther.value || followed) return {never, Proof::none, 0, looks};
-        if (outcome.contact.value)
-            return {parameters.time(pair.time), outcome.proven.value ? Proof::leaf : Proof::none, 0, looks};
+    SearchResult result = walk<kind>(pair, parameters, limit);
+    if (result.toi <= 1.0) result.toi = parameters.time(result.toi);
+    return result;
+}
+
+/// The motion with axes multiplied by the powers of two that bring their extents to [1/2, 1). Whether a pair is apart does not change, and
+/// answers do not depend on the units of an axis.
+RelativeMotion<double> with_equal_extents(const PairCoefficients& pair)
+{
+    RelativeMotion<double> r{};
+    for (int axis = 0; axis < 3; ++axis) {
+        double extent = 0.0;
+        for (int i = 0; i < 3; ++i) extent = std::max({extent, std::abs(pair.start[i][axis]), std::abs(pair.end[i][axis])});
+        int exponent = 0;
+        std::frexp(extent, &exponent);
+        const auto component = [&](Vector3<double>& v) -> double& { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+        for (int i = 0; i < 3; ++i) {
+            component(r.start[i]) = std::ldexp(pair.start[i][axis], -exponent);
+            component(r.end[i]) = std::ldexp(pair.end[i][axis], -exponent);
+        }
     }
+    return r;
+}
+
+template <PairKind kind>
+double search_on(const PairCoefficients& coefficients, SearchParameters parameters, double time)
+{
+    parameters.separation = SeparationParameters{};
+    SeparationRecord<double> pair{};
+    pair.r = with_equal_extents(coefficients);
+    pair.extents = extents(pair.r);
+    pair.time = pair.at = pair.window_low = pair.window_high = time;
+    return walk<kind>(pair, parameters, 1.0).toi;
 }
 
 }  // namespace
@@ -94,6 +133,12 @@ SearchResult separation_search(PairKind kind, const double* coordinates, const S
     if (!all_finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
     return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, limit)
                                          : search<PairKind::edge_edge>(coordinates, parameters, limit);
+}
+
+double apart_until(const PairCoefficients& pair, const SearchParameters& parameters, double time)
+{
+    return pair.kind == PairKind::vertex_face ? search_on<PairKind::vertex_face>(pair, parameters, time)
+                                              : search_on<PairKind::edge_edge>(pair, parameters, time);
 }
 
 }  // namespace fastccd::scalar

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <certified_search.hpp>
+#include <pair_coefficients.hpp>
 
 namespace fastccd::scalar {
 
@@ -11,5 +12,10 @@ namespace fastccd::scalar {
 /// `coordinates`: 24, in the order of PairView.
 SearchResult separation_search(PairKind kind, const double* coordinates, const SearchParameters& parameters,
                                double limit = 1.0);
+
+/// The same without any distance, for a pair that is certainly apart before `time`: the first time from there on at which it is not,
+/// or at which it is that close that computed positions cannot tell, 2^8 u of the sum of the extents, axes scaled so that these are
+/// alike; +infinity if there is none. Times in units of t_max.
+double apart_until(const PairCoefficients& pair, const SearchParameters& parameters, double time);
 
 }  // namespace fastccd::scalar

@@ -143,6 +143,10 @@ mutant 'search: inclusion at no area' $search 's/p != 0 && p == q && q == t/p ==
 mutant 'search: proof by sign alone' scalar/leaf_search.hpp 's/f\.c0 > bound && f\.c3 < -bound\) \|\| \(f\.c0 < -bound && f\.c3 > bound/f.c0 > 0 && f.c3 < 0) || (f.c0 < 0 && f.c3 > 0/' certificates_test truth_test nothing_invented_test same_bits_test stress
 mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/leaf\.a > 0\.0 && contact_proven/contact_proven/' never_zero_test
 mutant 'search: coarse next to time 0' scalar/leaf_search.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
+mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/false \&\& leaves/' nothing_invented_test never_zero_test
+mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair\.well_shaped\(s\)//' nothing_invented_test never_zero_test
+mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/result.proof == Proof::none \&\& leaves/' nothing_invented_test
+mutant 'search: doubts in the units of each axis' scalar/separation_search.cpp 's/std::frexp\(extent, &exponent\);//' same_bits_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
 mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && pair\.apart_by_area\(i\)\)//' ordered_search_test
 mutant 'search: contact at the start whatever the certificates' scalar/ordered_search.hpp 's/return apart\(i\) \|\| apart\(j\) \|\| apart\(k\);/return false;/' ordered_search_test

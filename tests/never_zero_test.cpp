@@ -1,6 +1,6 @@
 // Never zero by rounding: a pair that is certifiably apart at t = 0 gets toi > 0, whatever E_tol.
 //
-// Certifiably apart: by more than the rounding part of the bound in nothing_invented_test.cpp, 2^8 sqrt(u) s for any
+// Certifiably apart: by more than the rounding part of the bound in nothing_invented_test.cpp, 2^2 sqrt(u) s for any
 // shape and 2^10 u s for ordinary ones. E_tol is no part of it: a contact within the first leaf, however wide, has a
 // positive lower bound.
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST(NeverZero, MadePairs)
     for (const auto kind : kinds)
         for (const std::string& family : families()) {
             generate(family, kind, 91, 100, pairs);
-            expect_never_zero(kind, pairs, well_shaped(family) ? 0x1p10 * u : 0x1p8 * std::sqrt(u), family, seen);
+            expect_never_zero(kind, pairs, well_shaped(family) ? 0x1p10 * u : 0x1p2 * std::sqrt(u), family, seen);
         }
     std::printf("%zu answers for pairs apart at t = 0, %zu of them in contact within the first leaf\n", seen.apart, seen.in_first_leaf);
     EXPECT_GT(seen.in_first_leaf, 1000u);
@@ -78,7 +78,7 @@ TEST(NeverZero, MadePairs)
 TEST(NeverZero, ThinPairs)
 {
     Seen seen;
-    for (const auto kind : kinds) expect_never_zero(kind, ThinPairs{kind, 92}.next(2000), 0x1p8 * std::sqrt(u), "thin pairs", seen);
+    for (const auto kind : kinds) expect_never_zero(kind, ThinPairs{kind, 92}.next(2000), 0x1p2 * std::sqrt(u), "thin pairs", seen);
     EXPECT_GT(seen.apart, 1000u);
 }
 
