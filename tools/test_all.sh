@@ -11,11 +11,16 @@ test_sanitized_and_fuzz() {
   say "testing with sanitizers"
   ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)" --exclude-regex '^(oracle_test|report_test)$'
 
-  say "fuzzing, $seconds s each"
-  fuzz npy "$seconds" npy
+  say "fuzzing, $seconds s each, two at a time"
+  local beside
+  fuzz npy "$seconds" npy &
+  beside=$!
   fuzz csv "$seconds" csv
-  fuzz mesh "$seconds" ply obj
+  wait "$beside"
+  fuzz mesh "$seconds" ply obj &
+  beside=$!
   fuzz pairs "$seconds" pairs
+  wait "$beside"
 }
 
 # fuzz NAME SECONDS CORPUS...: on a copy of the corpora; stops at the first input that fails, and keeps it.
