@@ -86,7 +86,8 @@ public:
     }
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
-    /// that the pair is as close as computed positions can tell.
+    /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which fewer than
+    /// that many have not come to.
     [[nodiscard]] bool in_doubt(double s) const { return search.intervals >= most_intervals_in_leaf || !pair.well_shaped(s); }
 
     [[nodiscard]] unsigned intervals() const { return search.intervals; }

@@ -92,7 +92,9 @@ public:
     }
 
     /// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some
-    /// projection at s: 2^42 times their bound, some 13 u (magnitudes.hpp), is 2^-7 of the largest at any time of the step.
+    /// projection at s: 2^42 times their bound, some 13 u (magnitudes.hpp), is 2^-7 of the largest at any time of the step. A height
+    /// is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that. A choice, not a bound: who is well
+    /// shaped is spared a look.
     [[nodiscard]] bool well_shaped(double s) const
     {
         for (const auto& edges : pair.edges) {

@@ -6,8 +6,8 @@
 //                  farther                         farther
 //
 // Lanes take the steps of separation_steps.hpp, in the same operations as the scalar search; they leave to it pairs out
-// of range, and those that take too many steps. A pair that needs another step goes back to the end of [advancing], from which the next batch is taken,
-// so that batches stay full until the queue runs dry.
+// of range, and those that take too many steps. A pair that needs another step goes back to the end of [advancing], from which
+// the next batch is taken, so that batches stay full until the queue runs dry.
 #pragma once
 
 #include <block_source.hpp>
