@@ -5,7 +5,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${FASTCCD_BUILD:-$root/build}
 
-say() { printf '\n== %s\n' "$*"; }
+say() { printf '\n== %d:%02d %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; }
 
 library_packages=(g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev)
 tool_packages=(libcli11-dev libfmt-dev nlohmann-json3-dev libgmp-dev)
