@@ -54,7 +54,7 @@ public:
         set_vector(pair.gap_bound, {per_extent * extents.x, per_extent * extents.y, per_extent * extents.z});
         const Cubic<double> cubic = bernstein(f);
         pair.cubic[0] = cubic.c0, pair.cubic[1] = cubic.c1, pair.cubic[2] = cubic.c2, pair.cubic[3] = cubic.c3;
-        pair.cubic_bound = scalar::cubic_bound(r, bounds.cubic_on_interval() * scale.volume, bounds);
+        pair.cubic_bound = FASTCCD_KERNEL_NAMESPACE::cubic_bound(r, bounds.cubic_on_interval() * scale.volume, bounds);
         const MotionBounds<double> motion = motion_bounds(r);
         pair.edge = motion.edge, pair.speed = motion.speed;
         pair.area_rounding = area_rounding(scale, bounds);

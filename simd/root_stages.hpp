@@ -4,6 +4,7 @@
 #include <area_inclusion.hpp>
 #include <householder.hpp>
 #include <lane_results.hpp>
+#include <magnitudes.hpp>
 #include <part_certificates.hpp>
 #include <projected_inclusion.hpp>
 #include <records.hpp>
@@ -259,7 +260,7 @@ private:
         // from the leaf to the bracket's high side (and a leaf after it).
         const L before = max(min(bracket.low, leaf.left) - w, zero), after = min(max(bracket.high, leaf.right) + w, one);
         const Cubic<L> f_before = on_interval(f, before, leaf.left), f_after = on_interval(f, leaf.right, after);
-        const L bound = broadcast<L>(parameters.bounds.cubic_on_interval_lanes()) * root.scale.volume;
+        const L bound = cubic_bound_lanes(root.r, root.scale.volume, parameters.bounds);
         const LaneMask<L> crosses =
             leaf.inner & bracket.certain &
             ((less(bound, smallest(f_before)) & less(largest(f_after), zero - bound)) |

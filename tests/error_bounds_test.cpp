@@ -73,7 +73,7 @@ double cubic_on_interval_ratio(const Input& in, bool from_magnitudes)
     const auto f = portable::on_interval(whole, in.a, in.b);
     const auto thrice = thrice_cubic({in.x.data(), in.t_max}, in.a, in.b);
     const double from_extents = c.bounds.cubic_on_interval() * c.scale.volume;
-    const double bound = from_magnitudes ? scalar::cubic_bound(c.r, from_extents, c.bounds) : from_extents;
+    const double bound = from_magnitudes ? portable::cubic_bound(c.r, from_extents, c.bounds) : from_extents;
     const double computed[] = {f.c0, f.c1, f.c2, f.c3};
     double worst = 0;
     for (std::size_t k = 0; k < 4; ++k)
@@ -89,7 +89,7 @@ double quadratic_on_interval_ratio(const Input& in, bool from_magnitudes)
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         const auto q = portable::cross_product(c.r, static_cast<int>(i), static_cast<int>(j));
-        const auto m = scalar::cross_product_magnitude(c.r, static_cast<int>(i), static_cast<int>(j));
+        const auto m = portable::cross_product_magnitude(c.r, static_cast<int>(i), static_cast<int>(j));
         const auto twice = twice_cross(exact.at(i, in.a), exact.at(j, in.a), exact.at(i, in.b), exact.at(j, in.b));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto local = portable::on_interval(
@@ -97,7 +97,7 @@ double quadratic_on_interval_ratio(const Input& in, bool from_magnitudes)
                 in.a, in.b);
             const double from_extents = c.bounds.quadratic_on_interval() * area_of(c.scale, axis);
             const double bound = from_magnitudes
-                                     ? scalar::quadratic_bound(component(m.start, axis), component(m.twice_middle, axis),
+                                     ? portable::quadratic_bound(component(m.start, axis), component(m.twice_middle, axis),
                                                                component(m.end, axis), from_extents, c.bounds)
                                      : from_extents;
             const double computed[] = {local.c0, local.c1, local.c2};

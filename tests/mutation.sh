@@ -80,9 +80,9 @@ for name in quadratic quadratic_sum cubic linear cubic_on_interval quadratic_on_
             edge_function edge_function_sum area monotone_piece; do
   mutant "$name = 0" $bounds "s/(double $name\\(\\)(?: const)?\\s*\\{)\\s*return /\$1 return 0 * /" error_bounds_test
 done
-mutant 'quadratic_bound = 0' scalar/magnitudes.hpp 's/\* ErrorBounds::u \* m;(?=\s*return min\(bound \+ underflow_share \* from_extents, from_extents\);\s*\}\s*\/\/\/ Bound of the Bernstein)/* 0 * m;/' error_bounds_test
-mutant 'cubic_bound = 0' scalar/magnitudes.hpp 's/(\(3 \* bounds\.rho \+ 18 \+ ErrorBounds::slack\)) \* ErrorBounds::u/$1 * 0/' error_bounds_test
-mutant 'underflow_share = 0' scalar/magnitudes.hpp 's/underflow_share = 0x1p-40/underflow_share = 0/' error_bounds_test
+mutant 'quadratic_bound = 0' kernels/magnitudes.hpp 's/\* ErrorBounds::u \* m;(?=\s*return min\(bound \+ underflow_share \* from_extents, from_extents\);\s*\}\s*\/\/\/ Bound of the Bernstein)/* 0 * m;/' error_bounds_test
+mutant 'cubic_bound = 0' kernels/magnitudes.hpp 's/(\(3 \* bounds\.rho \+ 18 \+ ErrorBounds::slack\)) \* ErrorBounds::u/$1 * 0/' error_bounds_test
+mutant 'underflow_share = 0' kernels/magnitudes.hpp 's/underflow_share = 0x1p-40/underflow_share = 0/' error_bounds_test
 mutant 'length_floor = 0' $bounds 's/length_floor = 0x1p-266/length_floor = 0/' error_bounds_test
 mutant 'smallest_volume = 0' $bounds 's/smallest_volume = 0x1p-300/smallest_volume = 0/' same_bits_test certificates_test truth_test stress
 mutant 'lanes without largest extent' $bounds 's/t_max == 1\.0 \? largest_extent : 0\.25 \* largest_extent \* t_max/1e308/' certificates_test same_bits_test truth_test stress
@@ -91,6 +91,7 @@ mutant 'hull_deviation = 0' $bounds 's/hull_deviation = 4\.0/hull_deviation = 0/
 
 # ---- Margins of the lanes dropped
 mutant 'no margin on intervals' $bounds 's/cubic_on_interval\(\) \+ \(2 \* cubic_blossom_levels \+ slack\) \* u/cubic_on_interval()/' error_bounds_test
+mutant 'no margin of terms' kernels/magnitudes.hpp 's/3 \* bounds\.rho \+ 36 \+ 2 \* ErrorBounds::slack/3 * bounds.rho + 18 + ErrorBounds::slack/' error_bounds_test
 mutant 'no margin of edge functions' $bounds 's/4 \* rho \+ 16 \+ 2 \* \(4 \* rho \+ 18 \+ slack\)/4 * rho + 16/' error_bounds_test
 mutant 'no margin of sums of edge functions' $bounds 's/12 \* rho \+ 58 \+ 8 \* \(4 \* rho \+ 18 \+ slack\)/12 * rho + 58/' error_bounds_test
 mutant 'no margin of the cubic on a part' $bounds 's/ \+ 3 \* 2 \* cubic_on_interval\(\)//' error_bounds_test

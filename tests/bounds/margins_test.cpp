@@ -38,19 +38,29 @@ Cubic<double> cubic_of(const Computed& c)
 /// The search's bound is at most the one from extents, which stands for it.
 double search_bound(const Computed& c) { return c.bounds.cubic_on_interval() * c.scale.volume; }
 
+/// How far a coefficient that the search computes on `leaf` may lie beyond those that lanes see on `lanes`, around it.
+double cubic_margin(const Cubic<double>& whole, const Part& lanes, const Part& leaf)
+{
+    const Cubic<double> seen = portable::on_interval(whole, lanes.a, lanes.b);
+    const Cubic<double> local = portable::on_interval(whole, leaf.a, leaf.b);
+    return std::max(portable::smallest(seen) - portable::smallest(local), portable::largest(local) - portable::largest(seen));
+}
+
 TEST(Margins, CubicOnIntervals)
 {
-    expect_bound("cubic_on_interval_lanes", 0.1, [](const Input& in) {
+    // Lanes look at [0, b] or [b, 1], the search at a part of it.
+    const auto part = [](const Input& in) { return in.a < 0.5 ? Part{0.0, in.b} : Part{in.b, 1.0}; };
+    expect_bound("cubic_on_interval_lanes", 0.1, [&](const Input& in) {
         const Computed c{in};
-        const Cubic<double> whole = cubic_of(c);
-        // Lanes look at [0, b] or [b, 1], the search at a part of it.
-        const Part lanes = in.a < 0.5 ? Part{0.0, in.b} : Part{in.b, 1.0};
-        const Part leaf = part_of(lanes.a, lanes.b, in);
-        const Cubic<double> seen = portable::on_interval(whole, lanes.a, lanes.b);
-        const Cubic<double> local = portable::on_interval(whole, leaf.a, leaf.b);
-        const double margin = std::max(portable::smallest(seen) - portable::smallest(local),
-                                       portable::largest(local) - portable::largest(seen));
+        const Part lanes = part(in);
+        const double margin = cubic_margin(cubic_of(c), lanes, part_of(lanes.a, lanes.b, in));
         return (margin + search_bound(c)) / (c.bounds.cubic_on_interval_lanes() * c.scale.volume);
+    }, ordinary_shifts, effort);
+    expect_bound("cubic_bound_lanes", 0.1, [&](const Input& in) {
+        const Computed c{in};
+        const Part lanes = part(in);
+        const double margin = cubic_margin(cubic_of(c), lanes, part_of(lanes.a, lanes.b, in));
+        return (margin + portable::cubic_bound(c.r, search_bound(c), c.bounds)) / portable::cubic_bound_lanes(c.r, c.scale.volume, c.bounds);
     }, ordinary_shifts, effort);
 }
 
