@@ -68,17 +68,17 @@ FASTCCD_INLINE LaneMask<L> separated_on(const PairCoefficients& pair, L a, L b)
     return along(0) | along(1) | along(2);
 }
 
-/// True if one of the three proves absence on [a, b].
+/// True if one of the three proves absence on [a, b]. `met`: bits of lanes that do not matter.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> apart_on(const PairCoefficients& pair, L a, L b)
+FASTCCD_INLINE LaneMask<L> apart_on(const PairCoefficients& pair, L a, L b, unsigned met = 0)
 {
     constexpr unsigned all = (1u << Lane<L>::width) - 1;
     LaneMask<L> apart = never_coplanar(pair, a, b);
     for (const auto& edges : pair.edges) {
-        if (Lane<L>::bits(apart) == all) return apart;
+        if ((Lane<L>::bits(apart) | met) == all) return apart;
         apart = apart | apart_along<kind>(edges, a, b);
     }
-    return Lane<L>::bits(apart) == all ? apart : apart | separated_on<kind>(pair, a, b);
+    return (Lane<L>::bits(apart) | met) == all ? apart : apart | separated_on<kind>(pair, a, b);
 }
 
 /// Eq. 7 on [a, b]: its middle, with delta half its width.

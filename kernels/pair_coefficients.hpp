@@ -26,8 +26,9 @@ struct PairCoefficients {
     double area_rounding;           ///< Of area inclusion (area_inclusion.hpp).
 };
 
-/// Bit i: the pair is certainly apart on [starts[i], ends[i]], one interval per lane. `by_area`: eq. 7 counts, too.
-using ApartOnIntervals = unsigned(const PairCoefficients&, const double* starts, const double* ends, bool by_area);
+/// Bit i: the pair is certainly apart on [starts[i], ends[i]], one interval per lane. `by_area`: eq. 7 counts, too. `met`: bits of
+/// intervals that are known to have no certificate but that.
+using ApartOnIntervals = unsigned(const PairCoefficients&, const double* starts, const double* ends, unsigned met, bool by_area);
 
 /// The same for the lanes of one instruction set, `lanes` intervals at a time, at least 4. Null: not for this one.
 struct IntervalKernel {

@@ -37,6 +37,15 @@ public:
         return time;
     }
 
+    /// Where the cubic itself is zero, next to what from() answered last; nowhere if it does not change sign there.
+    [[nodiscard]] double root() const
+    {
+        if (next_piece == 0 || time == nowhere) return nowhere;
+        const int k = next_piece - 1;
+        if ((pieces.value[k] < 0.0) == (pieces.value[k + 1] < 0.0)) return nowhere;
+        return clipped_step(pieces.f, Bracket<double>{pieces.time[k], pieces.time[k + 1]}, time);
+    }
+
 private:
     static constexpr double none_yet = -1.0;  ///< Before any time.
 

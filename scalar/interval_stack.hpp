@@ -17,6 +17,8 @@ struct Interval {
 /// Halving adds one per level, and there are at most 50 levels of leaves or 100 below one (finest_at_zero).
 class IntervalStack {
 public:
+    static constexpr unsigned capacity = 128;
+
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] unsigned size() const { return size_; }
     /// The k-th from the top, which is the 0th.
@@ -32,7 +34,7 @@ public:
     }
 
 private:
-    Interval data_[128];
+    Interval data_[capacity];
     unsigned size_ = 0;
 };
 

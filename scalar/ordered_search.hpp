@@ -3,13 +3,15 @@
 // Each answer decides what is asked next. Kernels with lanes answer for several intervals in little more than the time of
 // one, so a question is joined by those that probably follow it: the way down to where contact is expected, and what lies
 // to the left of that way; if there is no such place, the halves of what waits. A wrong guess costs time alone: an answer is
-// used for the very interval it was given for, and only if the walk comes to it.
+// used for the very interval it was given for, and only if the walk comes to it. Once a look at the root itself has told that no interval
+// around it has a certificate (meeting.hpp), what lies on the way is not asked any more, or only for its areas.
 #pragma once
 
 #include <optional>
 
 #include <expected_contact.hpp>
 #include <interval_stack.hpp>
+#include <meeting.hpp>
 #include <pair_polynomials.hpp>
 
 namespace fastccd::scalar {
@@ -34,7 +36,7 @@ public:
     {
         while (!stack.empty()) {
             if (expected && intervals + kernel.lanes <= limit) {
-                if (const auto found = look_at_several(stack, by_area, narrowest)) return found;
+                if (const auto found = look_at_several(stack, by_area, limit, narrowest)) return found;
                 continue;
             }
             const Interval i = stack.pop();
@@ -62,6 +64,9 @@ public:
     unsigned intervals = 0;  ///< Counted.
 
 private:
+    /// What look_beside_way() may count: an interval and its half for each level.
+    static constexpr unsigned most_beside_way = 2 * IntervalStack::capacity;
+
     /// Questions for the kernel, in the order in which the walk comes to them.
     struct Questions {
         alignas(64) double starts[most_lanes];
@@ -73,17 +78,65 @@ private:
     };
 
     template <class Narrowest>
-    std::optional<Interval> look_at_several(IntervalStack& stack, bool by_area, Narrowest narrowest)
+    std::optional<Interval> look_at_several(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
     {
-        const double target = expected->from(stack.peek(0).a);
-        return target == ExpectedContact::nowhere ? look_at_halves(stack, by_area, narrowest)
-                                                  : look_towards(target, stack, by_area, narrowest);
+        const Interval next = stack.peek(0);
+        const double target = expected->from(next.a);
+        if (target == ExpectedContact::nowhere) return look_at_halves(stack, by_area, narrowest);
+        if (by_area || !next.contains(target) || !next.contains(meeting) || intervals + most_beside_way > limit)
+            return look_towards(target, stack, by_area, narrowest);
+        return look_beside_way(target, stack, narrowest);
+    }
+
+    /// Down to `target` as long as what is on the way contains the meeting, too: it has no certificate, only what lies to the left of
+    /// the way is asked.
+    template <class Narrowest>
+    std::optional<Interval> look_beside_way(double target, IntervalStack& stack, Narrowest narrowest)
+    {
+        Questions questions;
+        const unsigned waiting = stack.size();
+        const Interval first = stack.pop();
+        Interval way = first;
+        unsigned ways = 1;
+        for (; questions.size < kernel.lanes && !narrowest(way); ++ways) {
+            const double middle = way.middle();
+            const bool turns_right = middle < target;
+            const Interval next{turns_right ? middle : way.a, turns_right ? way.b : middle};
+            if (!next.contains(meeting)) break;
+            questions.put(questions.size, {way.a, middle});
+            questions.size += unsigned{turns_right};
+            stack.push({middle, way.b});
+            stack.drop(unsigned{turns_right});
+            way = next;
+        }
+        if (questions.size != 0 && (~ask(questions, false) & ((1u << questions.size) - 1)) != 0) {
+            // One of those has none. What follows from it is left to the other ways to look.
+            stack.drop(stack.size() + 1 - waiting);
+            stack.push(first);
+            meeting = ExpectedContact::nowhere;
+            return std::nullopt;
+        }
+        intervals += ways + questions.size;
+        if (narrowest(way)) return way;
+        stack.push_halves(way);
+        return std::nullopt;
     }
 
     unsigned ask(Questions& questions, bool by_area) const
     {
         for (unsigned k = questions.size; k < kernel.lanes; ++k) questions.put(k, questions.at(0));
-        return kernel.apart(pair.coefficients(), questions.starts, questions.ends, by_area);
+        unsigned met = 0;
+        for (unsigned k = 0; k < kernel.lanes; ++k) met |= unsigned{questions.starts[k] <= meeting && meeting <= questions.ends[k]} << k;
+        return kernel.apart(pair.coefficients(), questions.starts, questions.ends, met, by_area);
+    }
+
+    /// Whether the pair meets where it is expected to: most that come this far do, and intervals around that time need not be looked at.
+    void meet_at(double target)
+    {
+        if (target == tried) return;
+        tried = target;
+        const double root = expected->root();
+        meeting = root != ExpectedContact::nowhere && Meeting<kind>{pair.coefficients()}.at(root) ? root : ExpectedContact::nowhere;
     }
 
     /// Intervals that wait, each with its halves.
@@ -136,6 +189,7 @@ private:
         stack.drop(passed);
         for (unsigned k = 0; k < right; ++k) stack.push(beside[k]);
         if (!holds) return std::nullopt;
+        meet_at(target);
         if (narrowest(way)) return way;
         stack.push_halves(way);
         return std::nullopt;
@@ -160,6 +214,8 @@ private:
     const PairPolynomials<kind>& pair;
     IntervalKernel kernel{};
     std::optional<ExpectedContact> expected;  ///< If there are lanes.
+    double tried = -1.0;                       ///< Where a meeting was looked for last.
+    double meeting = ExpectedContact::nowhere; ///< A time of which meeting.hpp says that no interval around it has a certificate.
 };
 
 }  // namespace fastccd::scalar

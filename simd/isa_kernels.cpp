@@ -30,18 +30,18 @@ void run_kernel_tile(const TileRequest& request, TileScratch& scratch)
 }
 
 template <PairKind kind, class L>
-unsigned apart_on_lanes(const PairCoefficients& pair, const double* starts, const double* ends, bool by_area)
+unsigned apart_on_lanes(const PairCoefficients& pair, const double* starts, const double* ends, unsigned met, bool by_area)
 {
     const L a = Lane<L>::load(starts), b = Lane<L>::load(ends);
-    const LaneMask<L> apart = apart_on<kind>(pair, a, b);
-    return Lane<L>::bits(by_area ? apart | apart_by_area_on<kind>(pair, a, b) : apart);
+    const unsigned apart = Lane<L>::bits(apart_on<kind>(pair, a, b, met)) & ~met;
+    return by_area ? apart | Lane<L>::bits(apart_by_area_on<kind>(pair, a, b)) : apart;
 }
 
 template <class L>
-unsigned apart_on_intervals(const PairCoefficients& pair, const double* starts, const double* ends, bool by_area)
+unsigned apart_on_intervals(const PairCoefficients& pair, const double* starts, const double* ends, unsigned met, bool by_area)
 {
-    return pair.kind == PairKind::vertex_face ? apart_on_lanes<PairKind::vertex_face, L>(pair, starts, ends, by_area)
-                                              : apart_on_lanes<PairKind::edge_edge, L>(pair, starts, ends, by_area);
+    return pair.kind == PairKind::vertex_face ? apart_on_lanes<PairKind::vertex_face, L>(pair, starts, ends, met, by_area)
+                                              : apart_on_lanes<PairKind::edge_edge, L>(pair, starts, ends, met, by_area);
 }
 
 /// With two lanes, a search that foresees takes as long as one that asks for one interval at a time, or longer.

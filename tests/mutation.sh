@@ -156,7 +156,17 @@ mutant 'several: answers for other intervals' scalar/ordered_search.hpp 's/if \(
 mutant 'several: the way taken whatever the answers' scalar/ordered_search.hpp 's/if \(\(\(answers \^ apart\)[^;]*;//' ordered_search_test
 mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel\.lanes <= limit/intervals <= limit/' ordered_search_test
 mutant 'several: what lies beside the way forgotten' scalar/ordered_search.hpp 's/stack\.push\(beside\[k\]\)/static_cast<void>(beside[k])/' ordered_search_test
-mutant 'several: narrow intervals halved' scalar/ordered_search.hpp 's/if \(narrowest\(way\)\) return way;//' ordered_search_test
+mutant 'several: narrow intervals halved' scalar/ordered_search.hpp 's/meet_at\(target\);\s*if \(narrowest\(way\)\) return way;/meet_at(target);/' ordered_search_test
+mutant 'beside the way: narrow intervals halved' scalar/ordered_search.hpp 's/(intervals \+= ways \+ questions\.size;)\s*if \(narrowest\(way\)\) return way;/$1/' ordered_search_test
+mutant 'beside the way: whatever the answers' scalar/ordered_search.hpp 's/if \(questions\.size != 0 && [^{]*\{/if (ask(questions, false) > 1u << most_lanes) {/' ordered_search_test
+mutant 'beside the way: beyond the cap' scalar/ordered_search.hpp 's/ \|\| intervals \+ most_beside_way > limit//' ordered_search_test
+mutant 'beside the way: what lies to the right forgotten' scalar/ordered_search.hpp 's/stack\.drop\(unsigned\{turns_right\}\)/stack.drop(1)/' ordered_search_test
+mutant 'meeting whatever the cubic' scalar/meeting.hpp 's/if \(!may_be_coplanar\(s\)\) return false;//' ordered_search_test
+mutant 'meeting whatever the edge functions' scalar/meeting.hpp 's/if \(!may_touch_in_projection\(edges, s\)\) return false;/static_cast<void>(edges);/' ordered_search_test
+mutant 'meeting whatever the gaps' scalar/meeting.hpp 's/return may_overlap\(0, s\)[^;]*;/return true;/' ordered_search_test
+mutant 'value margin of cubics = 0' scalar/meeting.hpp 's/2 \* 9 \* ErrorBounds::u/0x1p-200/' error_bounds_test
+mutant 'value margin of quadratics = 0' scalar/meeting.hpp 's/2 \* 6 \* ErrorBounds::u/0x1p-200/' error_bounds_test
+mutant 'value margin of positions = 0' scalar/meeting.hpp 's/2 \* 4 \* ErrorBounds::u/0x1p-200/' error_bounds_test
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/product \* \(1\.0 - 0x1p-52\)/product/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
 mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test

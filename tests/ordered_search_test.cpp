@@ -2,14 +2,17 @@
 // same answer, proof, roots and count of intervals for every pair, whatever was foreseen.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <random>
 
 #include <certified_search.hpp>
 #include <interval_certificates.hpp>
 #include <kernel_table.hpp>
 #include <leaf_search.hpp>
+#include <meeting.hpp>
 #include <pair_polynomials.hpp>
 
 #include "generators.hpp"
@@ -23,22 +26,31 @@ constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_
 
 std::size_t calls = 0;
 
-/// A kernel with lanes on any machine: one interval after the other.
-template <unsigned lanes>
-unsigned apart_one_by_one(const PairCoefficients& pair, const double* starts, const double* ends, bool by_area)
+template <PairKind kind>
+bool has_certificate(const PairCoefficients& pair, double a, double b)
 {
-    ++calls;
+    return portable::apart_on<kind>(pair, a, b).value;
+}
+
+/// A kernel with lanes on any machine: one interval after the other.
+template <PairKind kind>
+unsigned apart_one_by_one(unsigned lanes, const PairCoefficients& pair, const double* starts, const double* ends, unsigned met, bool by_area)
+{
     unsigned bits = 0;
     for (unsigned k = 0; k < lanes; ++k) {
         const double a = starts[k], b = ends[k];
-        const bool apart = pair.kind == PairKind::vertex_face
-                               ? portable::apart_on<PairKind::vertex_face>(pair, a, b).value ||
-                                     (by_area && portable::apart_by_area_on<PairKind::vertex_face>(pair, a, b).value)
-                               : portable::apart_on<PairKind::edge_edge>(pair, a, b).value ||
-                                     (by_area && portable::apart_by_area_on<PairKind::edge_edge>(pair, a, b).value);
-        bits |= unsigned{apart} << k;
+        const bool apart = has_certificate<kind>(pair, a, b);
+        if (apart && (met >> k & 1) != 0) ADD_FAILURE() << "a certificate on [" << a << ", " << b << "], said to have none";
+        bits |= unsigned{apart || (by_area && portable::apart_by_area_on<kind>(pair, a, b).value)} << k;
     }
     return bits;
+}
+template <unsigned lanes>
+unsigned apart_one_by_one(const PairCoefficients& pair, const double* starts, const double* ends, unsigned met, bool by_area)
+{
+    ++calls;
+    return pair.kind == PairKind::vertex_face ? apart_one_by_one<PairKind::vertex_face>(lanes, pair, starts, ends, met, by_area)
+                                              : apart_one_by_one<PairKind::edge_edge>(lanes, pair, starts, ends, met, by_area);
 }
 
 std::vector<IntervalKernel> interval_kernels()
@@ -81,6 +93,46 @@ TEST(OrderedSearch, SeveralIntervalsAtOnceChangeNothing)
     }
 }
 
+/// Walks both ways until there is a leaf, or `limit` intervals have been counted: the same one, the same count, the same waiting.
+template <PairKind kind>
+void expect_same_walk(const oracle::Pair& pair, const SearchParameters& parameters, unsigned limit)
+{
+    const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
+    const auto is_leaf = [&](scalar::Interval i) { return i.width() <= parameters.leaf_width; };
+    const auto walk = [&](const IntervalKernel* lanes, scalar::IntervalStack& stack, unsigned& counted) {
+        scalar::OrderedSearch<kind> search{polynomials, parameters, lanes};
+        stack.push_halves({0.0, 1.0});
+        const auto found = search.next_without_certificate(stack, false, limit, is_leaf);
+        counted = search.intervals;
+        return found;
+    };
+    scalar::IntervalStack one_stack;
+    unsigned one_counted = 0;
+    const auto one = walk(nullptr, one_stack, one_counted);
+    for (const IntervalKernel& kernel : interval_kernels()) {
+        scalar::IntervalStack stack;
+        unsigned counted = 0;
+        ASSERT_EQ(walk(&kernel, stack, counted), one) << lossless(pair);
+        ASSERT_EQ(counted, one_counted) << lossless(pair);
+        ASSERT_EQ(stack.size(), one_stack.size()) << lossless(pair);
+        for (unsigned k = 0; k < stack.size(); ++k) ASSERT_EQ(stack.peek(k), one_stack.peek(k)) << lossless(pair);
+    }
+}
+
+TEST(OrderedSearch, TheSameWalkUpToAnyCap)
+{
+    std::vector<oracle::Pair> pairs;
+    const SearchParameters parameters{1e-12, 1.0, false};
+    for (const unsigned limit : {1u, 2u, 5u, 13u, 34u, 50u, 250u, 270u, 4096u}) {
+        for (const char* family : {"near_interior", "boundary", "grazing", "zero_cubic"}) {
+            generate(family, oracle::Kind::vertex_face, 308, 100, pairs);
+            for (const oracle::Pair& pair : pairs) expect_same_walk<PairKind::vertex_face>(pair, parameters, limit);
+            generate(family, oracle::Kind::edge_edge, 308, 100, pairs);
+            for (const oracle::Pair& pair : pairs) expect_same_walk<PairKind::edge_edge>(pair, parameters, limit);
+        }
+    }
+}
+
 /// Or there would be no point in it.
 TEST(OrderedSearch, ForeseesWhereContactIs)
 {
@@ -100,6 +152,65 @@ TEST(OrderedSearch, ForeseesWhereContactIs)
                         static_cast<double>(intervals) / static_cast<double>(calls));
             EXPECT_GT(intervals, 5 * calls);
         }
+    }
+}
+
+struct Meetings {
+    std::size_t met = 0, not_met = 0;
+};
+
+/// Looks next to where contact is expected, from 2^-60 to 2^-4 away from it, and if the pair is said to meet there, for certificates on
+/// intervals of all widths around that time.
+template <PairKind kind>
+void look_for_certificates(const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters, const std::string& what, Meetings& seen)
+{
+    std::mt19937_64 bits{305};
+    const auto width = [&] { return std::ldexp(1.0, -static_cast<int>(bits() % 57)); };
+    for (const oracle::Pair& pair : pairs) {
+        const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
+        if (polynomials.apart()) continue;
+        scalar::ExpectedContact expected{polynomials.coefficients(), parameters};
+        const double first = expected.from(0.0), root = expected.root();
+        if (first == expected.nowhere) continue;
+        const scalar::Meeting<kind> meeting{polynomials.coefficients()};
+        for (int k = 0; k < 12; ++k) {
+            const double by = k < 2 ? 0.0 : width() / 16, near = k % 2 == 0 || root == expected.nowhere ? first : root;
+            const double s = std::clamp(k % 4 < 2 ? near + by : near - by, 0.0, 1.0);
+            const bool meets = meeting.at(s);
+            ++(meets ? seen.met : seen.not_met);
+            for (int i = 0; meets && i < 20; ++i) {
+                const double before = i % 5 == 0 ? 0.0 : width(), after = i % 5 == 1 ? 0.0 : width();
+                const scalar::Interval around{std::max(s - before, 0.0), std::min(s + after, 1.0)};
+                ASSERT_FALSE(polynomials.apart(around))
+                    << what << ", s = " << s << " in [" << around.a << ", " << around.b << "]: " << lossless(pair);
+            }
+        }
+    }
+}
+
+TEST(OrderedSearch, NoCertificateAroundAMeeting)
+{
+    std::vector<oracle::Pair> pairs;
+    for (const auto kind : kinds) {
+        Meetings seen;
+        for (const double t_max : {1.0, 0.7}) {
+            const SearchParameters parameters{1e-9, t_max, false};
+            const auto look = [&](const std::string& what) {
+                if (kind == oracle::Kind::vertex_face)
+                    look_for_certificates<PairKind::vertex_face>(pairs, parameters, what, seen);
+                else
+                    look_for_certificates<PairKind::edge_edge>(pairs, parameters, what, seen);
+            };
+            for (const std::string& family : families()) {
+                generate(family, kind, 306, 300, pairs);
+                look(family);
+            }
+            pairs = ThinPairs{kind, 307}.next(2000);
+            look("thin");
+        }
+        std::printf("%s: met at %zu times of %zu\n", kind_name(kind), seen.met, seen.met + seen.not_met);
+        EXPECT_GT(seen.met, 20000u);
+        EXPECT_GT(seen.not_met, 20000u);
     }
 }
 

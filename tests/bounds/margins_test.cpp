@@ -7,6 +7,7 @@
 #include <bernstein.hpp>
 #include <halves_certificate.hpp>
 #include <magnitudes.hpp>
+#include <meeting.hpp>
 #include <projected_inclusion.hpp>
 
 #include "measured_bound.hpp"
@@ -61,6 +62,32 @@ TEST(Margins, CubicOnIntervals)
         const Part lanes = part(in);
         const double margin = cubic_margin(cubic_of(c), lanes, part_of(lanes.a, lanes.b, in));
         return (margin + portable::cubic_bound(c.r, search_bound(c), c.bounds)) / portable::cubic_bound_lanes(c.r, c.scale.volume, c.bounds);
+    }, ordinary_shifts, effort);
+}
+
+/// A value in the middle of an interval against the coefficients there, as a multiple of the margin.
+template <class Polynomial>
+double value_ratio(const Polynomial& whole, const Input& in)
+{
+    const double a = std::min(in.a, in.b), b = std::max(in.a, in.b), s = std::clamp(0.5 * (a + b), a, b);
+    const Polynomial local = portable::on_interval(whole, a, b);
+    const double value = portable::on_interval(whole, s, s).c0;
+    return std::max(portable::smallest(local) - value, value - portable::largest(local)) / scalar::value_margin(whole);
+}
+
+TEST(Margins, ValuesWithinIntervals)
+{
+    expect_bound("value_margin, cubic", 0.02, [](const Input& in) { return value_ratio(cubic_of(Computed{in}), in); }, ordinary_shifts, effort);
+    expect_bound("value_margin, quadratic", 0.02, [](const Input& in) {
+        const auto q = portable::cross_product(Computed{in}.r, 0, 1);
+        return value_ratio(Quadratic<double>{q.start.x, 0.5 * q.twice_middle.x, q.end.x}, in);
+    }, ordinary_shifts, effort);
+    expect_bound("value_margin, positions", 0.02, [](const Input& in) {
+        const Computed c{in};
+        const scalar::AxisMotion p{c.r.start[0].x, c.r.end[0].x}, q{c.r.start[1].x, c.r.end[1].x};
+        const auto gap = [&](double s) { return q.at(s) - p.at(s); };
+        const double a = std::min(in.a, in.b), b = std::max(in.a, in.b), at_s = gap(std::clamp(0.5 * (a + b), a, b));
+        return std::max(std::min(gap(a), gap(b)) - at_s, at_s - std::max(gap(a), gap(b))) / scalar::value_margin(p, q);
     }, ordinary_shifts, effort);
 }
 
