@@ -4,10 +4,10 @@
 // comes as close to it as rounding can tell, values at s contradict each certificate on any interval that contains s: a value at s
 // lies between the coefficients on the interval, which would all have to be beyond a bound.
 //
-// Both are computed. One lerp errs by 3 u M at most, M the larger magnitude of its operands: (1 - s) by u / 2, its product with p by u / 2
-// more, that of s and q by u / 2, the sum by u / 2, with some u M to spare for terms in u^2. Blossoms of n levels err by 3 n u C, C the largest
-// coefficient on [0, 1]. So if all coefficients that the search computes on an interval are beyond its bound, a value computed at s
-// within is beyond that bound less twice that much. What is compared here is less.
+// Both are computed. One lerp errs by 3 u M at most, M the larger magnitude of its operands: by u M of both products, (1 - s) M + s M in
+// size, by u M of their sum, and by u / 2 M as 1 - s is rounded; the rest is for terms in u^2 and for what is rounded below. Blossoms of n
+// levels err by 3 n u C, C the largest coefficient on [0, 1]. So if all coefficients that the search computes on an interval are beyond
+// its bound, a value computed at s within is beyond that bound less twice that much. It is not: so they are not.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +38,8 @@ struct AxisMotion {
     friend bool operator==(const AxisMotion&, const AxisMotion&) = default;
 };
 
-/// The same for the difference of two positions, and those at the ends of the interval. Each errs by 3 u of the larger magnitude at one time,
-/// the difference by u of both, together 4 u each; those of equal motions are equal.
+/// The same for the difference of two positions, and those at the ends of the interval. Each position errs by 3 u of its larger
+/// magnitude, the difference by u of both, at one time; those of equal motions are equal.
 inline double value_margin(const AxisMotion& p, const AxisMotion& q)
 {
     return p == q ? 0.0 : 2 * 4 * ErrorBounds::u * (p.largest() + q.largest());
