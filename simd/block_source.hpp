@@ -141,21 +141,27 @@ FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pair
 }
 
 /// Asks for memory from one address to another, line by line, and returns where it stopped (a function without a result would be
-/// taken for one without effect). Not inlined, and its loop not unrolled: lines that one and the same instruction asks for, in their
+/// taken for one without effect). Not inlined, and its loops not unrolled: lines that one and the same instruction asks for, in their
 /// order, come faster, probably because the hardware's own prefetchers take them up. With two instructions in turn half as many
 /// lines are under way (bench/README.md). Static, so that g++ sees which registers it leaves alone: all vectors.
-[[maybe_unused]] __attribute__((noinline)) static std::uintptr_t ask_for(std::uintptr_t next, std::uintptr_t end)
+[[maybe_unused]] __attribute__((noinline)) static std::uintptr_t ask_for(std::uintptr_t next, std::uintptr_t end, CacheLevel into)
 {
     constexpr std::uintptr_t line = 64;
+    if (into == CacheLevel::second) {
 #pragma GCC unroll 1
-    for (; next < end; next += line) __builtin_prefetch(reinterpret_cast<const void*>(next));
+        for (; next < end; next += line) __builtin_prefetch(reinterpret_cast<const void*>(next), 0, 2);
+    } else {
+#pragma GCC unroll 1
+        for (; next < end; next += line) __builtin_prefetch(reinterpret_cast<const void*>(next), 0, 3);
+    }
     return next;
 }
 
 /// Asks for packed pairs before they are read.
 class Prefetcher {
 public:
-    FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first)
+    FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first, CacheLevel into)
+        : into_{into}, most_ahead_{into == CacheLevel::second ? 2 * first_level_ahead : first_level_ahead}
     {
         if (source.view == nullptr) return;
         const PairView& pairs = *source.view;
@@ -167,9 +173,9 @@ public:
             return;
         }
         const std::size_t pair = pair_coordinates * number, all = source.size * pair;
-        if (all < most_ahead) return;  // would be read before it came
+        if (all < most_ahead_) return;  // would be read before it came
         const auto data = reinterpret_cast<std::uintptr_t>(pairs.data());
-        last_start_ = data + all - most_ahead;
+        last_start_ = data + all - most_ahead_;
         next_ = data + first * pair;
         // About what memory delivers while a pair is screened; a half to five sixths make no difference (bench/README.md).
         rate_ = pair * 2 / 3;
@@ -182,15 +188,15 @@ public:
     {
         auto at = reinterpret_cast<std::uintptr_t>(address);
         at = at < last_start_ ? at : last_start_;
-        limit_ = at + most_ahead;
-        const std::uintptr_t needed = at + least_ahead, even = next_ + pairs * rate_;
+        limit_ = at + most_ahead_;
+        const std::uintptr_t needed = at + most_ahead_ / 2, even = next_ + pairs * rate_;
         ask_until(even < needed ? needed : even);
     }
     /// The same for the layout `strided`, before the block that starts at pair `i` of the source.
     FASTCCD_INLINE void at_strided_block(std::size_t i)
     {
         // Of three lanes for the x, y and z of a point, so that triples, of stride 3, get all of their three lines.
-        constexpr auto ahead = static_cast<std::ptrdiff_t>(least_ahead / block_bytes * block_pairs);
+        constexpr auto ahead = static_cast<std::ptrdiff_t>(first_level_ahead / 2 / block_bytes * block_pairs);
         for (std::size_t c = 0; c < pair_coordinates; ++c) {
             const std::ptrdiff_t pair = static_cast<std::ptrdiff_t>(i) + ahead + 3 * static_cast<std::ptrdiff_t>(c % 3);
             __builtin_prefetch(static_cast<const std::byte*>(strided_->data(c)) + element_ * (pair < last_ ? pair : last_));
@@ -202,15 +208,18 @@ public:
 
 private:
     static constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double);
-    /// How far ahead of the block being read pairs are asked for: 8 to 16 blocks of doubles. With more, lines leave the first-level
-    /// cache again before they are read.
-    static constexpr std::uintptr_t least_ahead = 8 * block_bytes, most_ahead = 2 * least_ahead;
+    /// How far ahead of the block being read pairs are asked for, at most: 16 blocks of doubles, at least half of it. With more, lines
+    /// leave the first-level cache again before they are read. In the second-level one there is room: 16 to 32 blocks, of which up
+    /// to 64 are as good, and 8 take up to a tenth longer (bench/README.md).
+    static constexpr std::uintptr_t first_level_ahead = 16 * block_bytes;
 
-    FASTCCD_INLINE void ask_until(std::uintptr_t until) { next_ = ask_for(next_, until < limit_ ? until : limit_); }
+    FASTCCD_INLINE void ask_until(std::uintptr_t until) { next_ = ask_for(next_, until < limit_ ? until : limit_, into_); }
 
     // Addresses. As they stand here, for sources not asked for, next_ is never less than what at_pairs() would ask up to.
-    std::uintptr_t next_ = most_ahead, limit_ = 0;
-    std::uintptr_t last_start_ = 0;  ///< most_ahead before the end.
+    const CacheLevel into_;
+    const std::uintptr_t most_ahead_;  ///< Bytes; at least half as many are asked for before they are read.
+    std::uintptr_t next_ = most_ahead_, limit_ = 0;
+    std::uintptr_t last_start_ = 0;  ///< most_ahead_ before the end.
     std::uintptr_t rate_ = 0;        ///< Bytes a pair.
     const PairView* strided_ = nullptr;
     std::ptrdiff_t element_ = 0, last_ = 0;  ///< Bytes from a pair's coordinate to the next one's; the last pair.
@@ -224,7 +233,7 @@ public:
     FASTCCD_INLINE BlockSource(const TileRequest& tile, TileScratch& scratch)
         : tile_{tile}, scratch_{scratch}, indexed_{tile.source->view == nullptr},
           size_{indexed_ ? list_pairs<Batch>(tile, scratch.listed) : tile.count},
-          prefetcher_{*tile.source, tile.first}
+          prefetcher_{*tile.source, tile.first, tile.into}
     {
         if (indexed_) {
             if (size_ == 0) return;
