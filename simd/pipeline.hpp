@@ -99,6 +99,7 @@ private:
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
             const double* const block = blocks + i * pair_coordinates;
+            source.at_block();
             for (unsigned lane = 0; lane < block_pairs; lane += width) {
                 source.at_batch(block);
                 PairRecord<L> record;
@@ -136,6 +137,7 @@ private:
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; i += block_pairs) {
             const double* const block = blocks + i * pair_coordinates;
+            source.at_block();
             for (unsigned lane = 0; lane < block_pairs && i + lane < count; lane += width) {
                 source.at_batch(block);
                 PairRecord<L> record;

@@ -49,6 +49,7 @@ public:
             const std::size_t end = size - first < group_pairs ? size : first + group_pairs;
             for (std::size_t i = first; i < end; i += block_pairs) {
                 const double* const block = blocks + (i - first) * pair_coordinates;
+                pipeline.source.at_block();
                 for (unsigned lane = 0; lane < block_pairs && i + lane < end; lane += width) {
                     pipeline.source.at_batch(block);
                     pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use<L>(end - i - lane));
