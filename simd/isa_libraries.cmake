@@ -34,6 +34,8 @@ function(fastccd_add_isa_kernels target)
     # The kernels are optimised in every build type: without inlining they would be useless, and
     # functions shared between instruction sets would be emitted.
     target_compile_options(fastccd_${isa} PRIVATE -O3 ${flags_${isa}})
+    # Whatever is linked before them: with functions at multiples of 16, packed scenes took up to 8 % longer in one program than in another.
+    target_compile_options(fastccd_${isa} PRIVATE -falign-functions=64 -falign-loops=64)
     target_link_libraries(fastccd_${isa} PRIVATE fastccd_warnings fastccd_arithmetic)
     if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
       # Fewer registers in use at a time in the long straight lines of the certificates: up to 4 % faster, none slower.
