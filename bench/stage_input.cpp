@@ -65,8 +65,8 @@ bool passes_certificates(const Coordinates& pair, const SearchParameters& parame
     const auto apart = visit_edge_functions<kind>(record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
         return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, parameters.bounds.halves());
     });
-    mark_window(record, apart);
-    return !(apart.first.value && apart.second.value) && in_lane_range(record.cubic, extents, parameters.bounds).value;
+    record.pair = record.pair + window_mark(apart);
+    return !(apart.first.value && apart.second.value) && in_lane_range(record.cubic, extents, parameters.bounds.screening()).value;
 }
 
 /// Fills in the first piece in which the cubic changes sign; false if there is none for certain.

@@ -64,35 +64,40 @@ FASTCCD_INLINE unsigned for_each_batch(const Queue* queues, StageOfRecord stage)
 /// What is computed of the pairs, loading included.
 enum class Certificates {
     screening,  ///< Length and volume: what every pair costs.
-    whole,      ///< All three on the whole interval, as the certified search begins.
+    whole,      ///< All three on the whole interval.
     halves,     ///< Screening, then volume and area on both halves, as the pipeline goes on.
 };
 
+/// In the lanes that pairs are screened in.
 template <PairKind kind, Certificates wanted>
 unsigned certificates(const bench::StageInput& input)
 {
+    using S = typename Lane<L>::Screening;
     const ErrorBounds& all = input.parameters->bounds;
-    const CertificateBounds bounds = all.certificates(), halves = all.halves();
+    const ScreeningBounds bounds = Lane<S>::is_single ? all.screening_in_single() : all.screening();
     unsigned kept = 0;
-    for (std::size_t i = 0; i < input.pairs; i += block_pairs)
-        for (unsigned lane = 0; lane < block_pairs; lane += width) {
-            const double* const coordinates = input.blocks + i * pair_coordinates + lane;
-            const RelativeMotion<L> r = relative_motion<L>(coordinates, block_pairs, input.parameters->t_max);
-            Extents<L> extents;
-            LaneMask<L> apart = linear_certificate<kind>(r, bounds, extents);
-            const Scales<L> scale = scales(extents);
-            const CoplanarityCubic<L> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
-            apart = apart | cubic_certificate(cubic, scale.volume, bounds);
-            if constexpr (wanted != Certificates::screening)
-                apart = apart | visit_edge_functions<kind>(
-                                    r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                                        if constexpr (wanted == Certificates::whole)
-                                            return quadratic_certificate<kind>(p, q, t, s, scale, bounds);
-                                        const auto on = halves_certificate<kind>(cubic, p, q, t, s, scale, halves);
-                                        return on.first & on.second;
-                                    });
-            kept += count(Lane<L>::bits(in_lane_range(cubic, extents, all)) & ~Lane<L>::bits(apart));
+    for (std::size_t i = 0; i < input.pairs; i += Lane<S>::width) {
+        const double* parts[Lane<S>::width / width];
+        for (std::size_t j = i; const double*& part : parts) {
+            part = input.blocks + j / block_pairs * block_coordinates + j % block_pairs;
+            j += width;
         }
+        const RelativeMotion<S> r = relative_motion_in<S, L>(parts, block_pairs, input.parameters->t_max);
+        Extents<S> extents;
+        LaneMask<S> apart = linear_certificate<kind>(r, bounds.whole, extents);
+        const Scales<S> scale = scales(extents);
+        const CoplanarityCubic<S> cubic = coplanarity_cubic(r, cross_product(r, 0, 1));
+        apart = apart | cubic_certificate(cubic, scale.volume, bounds.whole);
+        if constexpr (wanted != Certificates::screening)
+            apart = apart |
+                    visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                        if constexpr (wanted == Certificates::whole)
+                            return quadratic_certificate<kind>(p, q, t, s, scale, bounds.whole);
+                        const auto on = halves_certificate<kind>(cubic, p, q, t, s, scale, bounds.halves);
+                        return on.first & on.second;
+                    });
+        kept += count(Lane<S>::bits(in_lane_range(cubic, extents, bounds)) & ~Lane<S>::bits(apart));
+    }
     return kept;
 }
 

@@ -23,7 +23,7 @@ struct Scales {
 template <class L>
 FASTCCD_INLINE Scales<L> scales(const Extents<L>& e)
 {
-    const L floor = broadcast<L>(length_floor);
+    const L floor = broadcast<L>(extent_floor(Lane<L>::is_single));
     const L x = max(e.x, floor), y = max(e.y, floor), z = max(e.z, floor);
     const L xy = x * y;
     return {y * z, z * x, xy, xy * z};
@@ -74,7 +74,7 @@ FASTCCD_INLINE LaneMask<L> separated(const AxisGap<L>& start, const AxisGap<L>& 
 template <class L>
 FASTCCD_INLINE L gap_bound(const CertificateBounds& bounds, L extent)
 {
-    return broadcast<L>(bounds.linear) * max(extent, broadcast<L>(length_floor));
+    return broadcast<L>(bounds.linear) * max(extent, broadcast<L>(extent_floor(Lane<L>::is_single)));
 }
 
 template <class L>
@@ -202,12 +202,14 @@ FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, co
 
 /// True where the coordinates are finite and their differences within the lanes' range. Extents in
 /// that range are of finite r_i, unless one is NaN, which maxima may lose; but every component of every r_i
-/// is a factor of f0 or f3, and then their sum is NaN, the only number not at most itself.
+/// is a factor of f0 or f3, and then their sum is NaN, the only number not at most itself. In single precision not too small either.
 template <class L>
-FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e, const ErrorBounds& bounds)
+FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e, const ScreeningBounds& bounds)
 {
-    const L sum = f.start + f.end;
-    return less_equal(sum, sum) & less(max(e.x, e.y, e.z), broadcast<L>(bounds.largest_lane_extent));
+    const L sum = f.start + f.end, largest = max(e.x, e.y, e.z);
+    const LaneMask<L> in_range = less_equal(sum, sum) & less(largest, broadcast<L>(bounds.largest_extent));
+    if constexpr (Lane<L>::is_single) return in_range & less(broadcast<L>(bounds.smallest_extent), largest);
+    return in_range;
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

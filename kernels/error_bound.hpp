@@ -25,6 +25,13 @@ struct CertificateBounds {
 /// Axes on which the coordinates of a pair differ by more are scaled down by the certified search.
 inline constexpr double largest_extent = 0x1p100;
 
+/// What screening compares with in one precision: certificates on the whole interval, on both halves, and on a part at its start; and
+/// between which limits the largest extent of a pair is to be.
+struct ScreeningBounds {
+    CertificateBounds whole, halves, part;
+    double smallest_extent, largest_extent;
+};
+
 /// Bounds of one call; they depend on t_max alone. All are factors that multiply u times a product
 /// of extents, u included: |computed - exact| <= bound * product.
 struct ErrorBounds {
@@ -140,6 +147,33 @@ struct ErrorBounds {
         return {cubic(), quadratic(), quadratic_sum(), linear()};
     }
 
+    /// For screening in the precision of all else.
+    [[nodiscard]] FASTCCD_INLINE constexpr ScreeningBounds screening() const
+    {
+        return {certificates(), halves(), on_part(), 0.0, largest_lane_extent};
+    }
+
+    /// Of single precision.
+    static constexpr double single_u = 0x1p-24;
+
+    /// For screening in single precision, by the same text. Components of r_i are those of double precision, rounded once more: rho
+    /// = 1 in units of single_u. What is left of the bounds above is what computing adds, and the slack, 2 single_u: that is 2^30 u, and
+    /// covers all that is counted there in multiples of u, below 2^14 in each bound (the error of the r_i before they are rounded,
+    /// the search's coefficients and bounds, by which "apart" here is "apart" there), with terms in single_u^2, below
+    /// 2^10 single_u of the constants, some twenty deep. Rounding is monotone here too: t_max = 1 leaves 0 for gaps.
+    [[nodiscard]] FASTCCD_INLINE constexpr ScreeningBounds screening_in_single() const
+    {
+        constexpr double end_rho = 1.0 + 3.0;  // as in on_part()
+        const double gap = rho == 1.0 ? 0.0 : (2 + 2 + slack) * single_u;
+        return {{(54 + 114 + slack) * single_u, (8 + 12 + slack) * single_u, (24 + 56 + slack) * single_u, gap},
+                {(216 + 588 + slack) * single_u, (16 + 36 + slack) * single_u, (48 + 148 + slack) * single_u, 0.0},
+                {(54 * end_rho + 114 + slack) * single_u, (8 * end_rho + 12 + slack) * single_u, (24 * end_rho + 56 + slack) * single_u,
+                 (2 * end_rho + 2 + slack) * single_u},
+                0x1p-30,
+                // 72 V, the largest value on halves, does not overflow.
+                largest_lane_extent < 0x1p40 ? largest_lane_extent : 0x1p40};
+    }
+
     // ---- Edge functions at one time and over its neighbourhood (projected_inclusion.hpp) ----------
 
     /// A component of r_i(s) x r_j(s) from lerped vectors; times Y Z. Lerped components err by
@@ -214,6 +248,12 @@ struct ErrorBounds {
 /// components err by a few 2^-1074: far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes
 /// and go to the scalar path, which scales each axis by a power of two.
 inline constexpr double length_floor = 0x1p-266;
+/// The same for lanes of single precision, which screen pairs with extents between `smallest_extent` and `largest_extent` of
+/// ErrorBounds::screening_in_single(), 2^-30 and 2^40. Areas are 2^-80 and volumes 2^-120 at least. A product of two components that underflows
+/// errs by at most 2^-150, far below single_u 2^-80, and that times the third component Z by 2^-150 Z, some thousand times over:
+/// far below single_u 2^-80 Z. Bounds of volumes, 2^-137 at least, are rounded by 2^-150.
+inline constexpr double single_length_floor = 0x1p-40;
+[[nodiscard]] FASTCCD_INLINE constexpr double extent_floor(bool single) { return single ? single_length_floor : length_floor; }
 /// Smallest V for which discriminants (degree 2 in V) cannot underflow.
 inline constexpr double smallest_volume = 0x1p-300;
 

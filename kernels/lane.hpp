@@ -1,7 +1,7 @@
 // What a lane type must provide, and the lane type `double`.
 //
 // Every kernel is one template on a lane type L: `double` (one pair) or `xsimd::batch<double, A>`
-// (several pairs side by side). Only + - * / and square root, all correctly rounded by IEEE 754,
+// (several pairs side by side); the certificates also `xsimd::batch<float, A>`, twice as many. Only + - * / and square root, all correctly rounded by IEEE 754,
 // comparisons, operations on the sign bit, and the min / max below may decide a result: that is what makes
 // the results the same bits for every L. Nothing is contracted (the build switches that off): no product loses its rounding.
 //
@@ -42,6 +42,16 @@ template <>
 struct Lane<double> {
     using Mask = BoolMask;
     static constexpr unsigned width = 1;
+    static constexpr bool is_single = false;
+    /// The lane type that pairs are screened in: of single precision where that makes lanes, two batches of this one at a time. In
+    /// groups of pairs of which most go on, and of which few do.
+    using Screening = double;
+    using SparseScreening = double;
+    template <unsigned part>
+    static FASTCCD_INLINE double widened(double x)
+    {
+        return x;
+    }
 
     static FASTCCD_INLINE double broadcast(double x) { return x; }
     static FASTCCD_INLINE double load(const double* p) { return *p; }

@@ -1,8 +1,10 @@
-// The lane type xsimd::batch<double, A>.
+// The lane types xsimd::batch<double, A> and, for screening, xsimd::batch<float, A>.
 //
 // xsimd gives loads, arithmetic, comparisons and selection. What it lacks in version 8.1 (bits of a mask,
 // storing only some lanes, min / max with MINPD's rule on NEON) is written out per architecture.
 #pragma once
+
+#include <type_traits>
 
 #include <xsimd/xsimd.hpp>
 
@@ -49,6 +51,13 @@ struct BatchTraits<xsimd::sse2> {
     {
         _mm_storeu_pd(p, bits == 2 ? _mm_unpackhi_pd(x, x) : x);
     }
+    static FASTCCD_INLINE unsigned bits(__m128 m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
+    static constexpr bool screens_scenes_in_single = true;
+    static FASTCCD_INLINE __m128 min(__m128 a, __m128 b) { return _mm_min_ps(a, b); }
+    static FASTCCD_INLINE __m128 max(__m128 a, __m128 b) { return _mm_max_ps(a, b); }
+    static FASTCCD_INLINE __m128 narrowed(__m128d low, __m128d high) { return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high)); }
+    static FASTCCD_INLINE __m128d widened_low(__m128 x) { return _mm_cvtps_pd(x); }
+    static FASTCCD_INLINE __m128d widened_high(__m128 x) { return _mm_cvtps_pd(_mm_movehl_ps(x, x)); }
     static FASTCCD_INLINE __m128d min(__m128d a, __m128d b) { return _mm_min_pd(a, b); }
     static FASTCCD_INLINE __m128d max(__m128d a, __m128d b) { return _mm_max_pd(a, b); }
     static FASTCCD_INLINE __m128d difference(__m128d a, __m128d b) { return _mm_sub_pd(a, b); }
@@ -132,6 +141,16 @@ struct BatchTraits<xsimd::avx2> : WideBoxes {
     {
         const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[bits]));
         _mm256_storeu_pd(p, _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(x), order)));
+    }
+    static FASTCCD_INLINE unsigned bits(__m256 m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
+    static constexpr bool screens_scenes_in_single = true;
+    static FASTCCD_INLINE __m256 min(__m256 a, __m256 b) { return _mm256_min_ps(a, b); }
+    static FASTCCD_INLINE __m256 max(__m256 a, __m256 b) { return _mm256_max_ps(a, b); }
+    static FASTCCD_INLINE __m256d widened_low(__m256 x) { return _mm256_cvtps_pd(_mm256_castps256_ps128(x)); }
+    static FASTCCD_INLINE __m256d widened_high(__m256 x) { return _mm256_cvtps_pd(_mm256_extractf128_ps(x, 1)); }
+    static FASTCCD_INLINE __m256 narrowed(__m256d low, __m256d high)
+    {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
     }
     static FASTCCD_INLINE __m256d min(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
     static FASTCCD_INLINE __m256d max(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
@@ -222,6 +241,17 @@ struct BatchTraits<xsimd::avx512bw> : WideBoxes {
         const __m512i order = _mm512_maskz_compress_epi64(static_cast<__mmask8>(bits), _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0));
         _mm512_storeu_pd(p, _mm512_permutexvar_pd(order, x));
     }
+    static FASTCCD_INLINE unsigned bits(__mmask16 m) { return m; }
+    /// Not where few pairs go on: scenes took a tenth longer on Zen 4, where half of the work is to convert (bench/README.md).
+    static constexpr bool screens_scenes_in_single = false;
+    static FASTCCD_INLINE __m512 min(__m512 a, __m512 b) { return _mm512_min_ps(a, b); }
+    static FASTCCD_INLINE __m512 max(__m512 a, __m512 b) { return _mm512_max_ps(a, b); }
+    static FASTCCD_INLINE __m512d widened_low(__m512 x) { return _mm512_maskz_cvtps_pd(0xff, _mm512_castps512_ps256(x)); }
+    static FASTCCD_INLINE __m512d widened_high(__m512 x) { return _mm512_maskz_cvtps_pd(0xff, _mm512_maskz_extractf32x8_ps(0xff, x, 1)); }
+    static FASTCCD_INLINE __m512 narrowed(__m512d low, __m512d high)
+    {
+        return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_castps_pd(_mm512_maskz_cvtpd_ps(0xff, low))), _mm256_castps_pd(_mm512_maskz_cvtpd_ps(0xff, high)), 1));
+    }
     static FASTCCD_INLINE __m512d min(__m512d a, __m512d b) { return _mm512_min_pd(a, b); }
     static FASTCCD_INLINE __m512d max(__m512d a, __m512d b) { return _mm512_max_pd(a, b); }
     /// 1 a - b by the units that multiply: one rounding of a - b, signs of zeros included, so the same bits. Sums, minima and
@@ -255,6 +285,17 @@ struct BatchTraits<xsimd::neon64> {
     // vminq / vmaxq propagate NaN and order the zeros; MINPD's rule is a selection.
     static FASTCCD_INLINE float64x2_t min(float64x2_t a, float64x2_t b) { return vbslq_f64(vcltq_f64(a, b), a, b); }
     static FASTCCD_INLINE float64x2_t max(float64x2_t a, float64x2_t b) { return vbslq_f64(vcgtq_f64(a, b), a, b); }
+    static FASTCCD_INLINE unsigned bits(uint32x4_t m)
+    {
+        const uint32x4_t lanes = {1, 2, 4, 8};
+        return vaddvq_u32(vandq_u32(m, lanes));
+    }
+    static constexpr bool screens_scenes_in_single = true;
+    static FASTCCD_INLINE float32x4_t min(float32x4_t a, float32x4_t b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
+    static FASTCCD_INLINE float32x4_t max(float32x4_t a, float32x4_t b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+    static FASTCCD_INLINE float32x4_t narrowed(float64x2_t low, float64x2_t high) { return vcvt_high_f32_f64(vcvt_f32_f64(low), high); }
+    static FASTCCD_INLINE float64x2_t widened_low(float32x4_t x) { return vcvt_f64_f32(vget_low_f32(x)); }
+    static FASTCCD_INLINE float64x2_t widened_high(float32x4_t x) { return vcvt_high_f64_f32(x); }
     static FASTCCD_INLINE float64x2_t difference(float64x2_t a, float64x2_t b) { return vsubq_f64(a, b); }
     static constexpr unsigned transposed_records = 2;
     static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
@@ -291,6 +332,16 @@ struct Lane<xsimd::batch<double, A>> {
     using Mask = xsimd::batch_bool<double, A>;
     using Traits = BatchTraits<A>;
     static constexpr unsigned width = Batch::size;
+    static constexpr bool is_single = false;
+    using Screening = xsimd::batch<float, A>;
+    using SparseScreening = std::conditional_t<Traits::screens_scenes_in_single, Screening, Batch>;
+    /// Both rounded, one behind the other, and back.
+    static FASTCCD_INLINE Screening narrowed(Batch low, Batch high) { return Traits::narrowed(low, high); }
+    template <unsigned part>
+    static FASTCCD_INLINE Batch widened(Screening x)
+    {
+        return part == 0 ? Traits::widened_low(x) : Traits::widened_high(x);
+    }
 
     static FASTCCD_INLINE Batch broadcast(double x) { return Batch(x); }
     static FASTCCD_INLINE Batch load(const double* p) { return Batch::load_unaligned(p); }
@@ -328,6 +379,28 @@ struct Lane<xsimd::batch<double, A>> {
     static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second) { return Traits::apart(first, second); }
 };
 
+template <class A>
+struct Lane<xsimd::batch<float, A>> {
+    using Batch = xsimd::batch<float, A>;
+    using Mask = xsimd::batch_bool<float, A>;
+    using Traits = BatchTraits<A>;
+    static constexpr unsigned width = Batch::size;
+    static constexpr bool is_single = true;
+
+    static FASTCCD_INLINE Batch broadcast(double x) { return Batch(static_cast<float>(x)); }
+
+    static FASTCCD_INLINE Batch min(Batch a, Batch b) { return Traits::min(a, b); }
+    static FASTCCD_INLINE Batch max(Batch a, Batch b) { return Traits::max(a, b); }
+    static FASTCCD_INLINE Batch abs(Batch a) { return xsimd::abs(a); }
+    static FASTCCD_INLINE Batch negated(Batch a) { return a ^ broadcast(-0.0); }
+    static FASTCCD_INLINE Batch times_sign(Batch a, Batch b) { return a ^ (b & broadcast(-0.0)); }
+
+    static FASTCCD_INLINE Batch select(Mask m, Batch yes, Batch no) { return xsimd::select(m, yes, no); }
+    static FASTCCD_INLINE Mask less(Batch a, Batch b) { return a < b; }
+    static FASTCCD_INLINE Mask less_equal(Batch a, Batch b) { return a <= b; }
+    static FASTCCD_INLINE unsigned bits(Mask m) { return Traits::bits(m.data); }
+};
+
 // Found by argument, xsimd::min and max would be preferred to the templates of lane.hpp, and on NEON they propagate NaN. These are
 // preferred to both. To be included before the kernels, which look them up where they stand.
 
@@ -337,9 +410,19 @@ FASTCCD_INLINE xsimd::batch<double, A> min(const xsimd::batch<double, A>& a, con
     return Lane<xsimd::batch<double, A>>::min(a, b);
 }
 template <class A>
+FASTCCD_INLINE xsimd::batch<float, A> min(const xsimd::batch<float, A>& a, const xsimd::batch<float, A>& b)
+{
+    return Lane<xsimd::batch<float, A>>::min(a, b);
+}
+template <class A>
 FASTCCD_INLINE xsimd::batch<double, A> max(const xsimd::batch<double, A>& a, const xsimd::batch<double, A>& b)
 {
     return Lane<xsimd::batch<double, A>>::max(a, b);
+}
+template <class A>
+FASTCCD_INLINE xsimd::batch<float, A> max(const xsimd::batch<float, A>& a, const xsimd::batch<float, A>& b)
+{
+    return Lane<xsimd::batch<float, A>>::max(a, b);
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

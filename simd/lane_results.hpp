@@ -13,7 +13,7 @@ FASTCCD_INLINE unsigned lanes_in_use(std::size_t left)
     return left >= Lane<L>::width ? (1u << Lane<L>::width) - 1 : (1u << left) - 1;
 }
 
-/// Calls visit(i, lane) for the pairs of the lanes whose bit is set; a fraction of their numbers (mark_window) is cut off.
+/// Calls visit(i, lane) for the pairs of the lanes whose bit is set; a fraction of their numbers (window_mark) is cut off.
 template <class L, class Visit>
 FASTCCD_INLINE void for_each_pair(L pair, unsigned lanes, Visit visit)
 {

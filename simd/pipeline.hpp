@@ -14,6 +14,11 @@
 // [slow] also takes the roots after a pair's first, if that is no contact or if roots are counted. Before a pair is left undecided by
 // the search for its roots, all certificates are tried on quarters of the step.
 //
+// The first stages run in single precision where that makes lanes of it, twice as many as of double: differences of coordinates are taken
+// in double, then rounded. They only prove pairs apart, by bounds for that precision (ErrorBounds::screening_in_single), and what they
+// prove the certified search proves too; so whether lanes do so, and for which pairs, changes no result. Pairs too large or too small for it
+// are screened in double. All that finds a time is in double.
+//
 // Queues pack what a stage leaves, so that the next one runs on full batches. Where few pairs are left, the queue says where
 // their coordinates are; where most are, whole registers are compressed, and [screened] is left out.
 //
@@ -59,35 +64,69 @@ private:
     static constexpr unsigned width = Lane<L>::width;
 
     const SearchParameters& parameters;
-    const CertificateBounds whole, halves, on_part;
+    const ScreeningBounds in_double, in_single;
     const double cutoff;
     TileScratch& scratch;
     BlockSource<kind, L> source;
     RootStages<kind, L> root_stages;
 
     FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& s)
-        : parameters{*request.parameters}, whole{parameters.bounds.certificates()}, halves{parameters.bounds.halves()},
-          on_part{parameters.bounds.on_part()}, cutoff{request.cutoff}, scratch{s}, source{request, s}, root_stages{parameters, s}
+        : parameters{*request.parameters}, in_double{parameters.bounds.screening()}, in_single{parameters.bounds.screening_in_single()},
+          cutoff{request.cutoff}, scratch{s}, source{request, s}, root_stages{parameters, s}
     {
+    }
+
+    template <class S>
+    [[nodiscard]] FASTCCD_INLINE const ScreeningBounds& bounds_of() const
+    {
+        if constexpr (Lane<S>::is_single)
+            return in_single;
+        else
+            return in_double;
     }
 
     /// What the linear and cubic certificates say of a batch.
     struct Screening {
         unsigned kept;    ///< Lanes to look into.
-        unsigned beyond;  ///< Lanes whose coordinates lanes do not decide.
+        unsigned beyond;  ///< Lanes whose coordinates lanes of this precision do not decide.
     };
 
-    /// Linear and cubic certificates on the whole interval. Fills in the record but for `pair`.
-    FASTCCD_INLINE Screening screen(const double* coordinates, PairRecord<L>& record)
+    /// Linear and cubic certificates on the whole interval. Fills in scale and cubic of the record.
+    template <class S>
+    FASTCCD_INLINE Screening screen(PairRecord<S>& record)
     {
-        record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
-        Extents<L> extents;
-        const LaneMask<L> separated = linear_certificate<kind>(record.r, whole, extents);
+        const ScreeningBounds& bounds = bounds_of<S>();
+        Extents<S> extents;
+        const LaneMask<S> separated = linear_certificate<kind>(record.r, bounds.whole, extents);
         record.scale = scales(extents);
         record.cubic = coplanarity_cubic(record.r, cross_product(record.r, 0, 1));
-        const unsigned in_range = Lane<L>::bits(in_lane_range(record.cubic, extents, parameters.bounds));
-        const unsigned apart = Lane<L>::bits(separated | cubic_certificate(record.cubic, record.scale.volume, whole));
-        return {in_range & ~apart, lanes_in_use<L>(width) & ~in_range};
+        const unsigned in_range = Lane<S>::bits(in_lane_range(record.cubic, extents, bounds));
+        const unsigned apart = Lane<S>::bits(separated | cubic_certificate(record.cubic, record.scale.volume, bounds.whole));
+        return {in_range & ~apart, lanes_in_use<S>(Lane<S>::width) & ~in_range};
+    }
+
+    /// Where the pairs from `i` on lie of which the lanes of an S hold so many batches of L.
+    template <class S>
+    struct Parts {
+        static constexpr unsigned count = Lane<S>::width / width;
+        const double* at[count];
+    };
+    /// Of pairs that screening reads next. What lies past the end is the first part again.
+    template <class S>
+    FASTCCD_INLINE Parts<S> next_parts(const double* blocks, std::size_t i, std::size_t count)
+    {
+        Parts<S> parts;
+        for (unsigned k = 0; k < Parts<S>::count; ++k) {
+            const std::size_t j = i + k * width < count ? i + k * width : i;
+            if (j % block_pairs == 0) source.at_block();
+            parts.at[k] = in_blocks(blocks, j);
+            source.at_batch(parts.at[k]);
+        }
+        return parts;
+    }
+    FASTCCD_INLINE static const double* in_blocks(const double* blocks, std::size_t i)
+    {
+        return blocks + i / block_pairs * block_coordinates + i % block_pairs;
     }
 
     /// For scenes, where most pairs end here: screens a group without looking at any result, which no branch predictor could
@@ -95,22 +134,21 @@ private:
     /// instructions reach: there is nothing in the loop that could be done before or after it.
     void screen_group(std::size_t first, std::size_t count)
     {
+        using S = typename Lane<L>::SparseScreening;
         const double* const blocks = source.group(first);
         std::uint64_t kept = 0, beyond = 0;
-        for (std::size_t i = 0; i < count; i += block_pairs) {
-            const double* const block = blocks + i * pair_coordinates;
-            source.at_block();
-            for (unsigned lane = 0; lane < block_pairs; lane += width) {
-                source.at_batch(block);
-                PairRecord<L> record;
-                const Screening found = screen(block + lane, record);
-                kept |= std::uint64_t{found.kept} << (i + lane);
-                beyond |= std::uint64_t{found.beyond} << (i + lane);
-            }
+        for (std::size_t i = 0; i < count; i += Lane<S>::width) {
+            PairRecord<S> record;
+            record.r = relative_motion_in<S, L>(next_parts<S>(blocks, i, count).at, block_pairs, parameters.t_max);
+            const Screening found = screen(record);
+            kept |= std::uint64_t{found.kept} << i;
+            beyond |= std::uint64_t{found.beyond} << i;
         }
         const std::uint64_t in_use = count < group_pairs ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
         kept &= in_use;
-        for (beyond &= in_use; beyond != 0; beyond &= beyond - 1)
+        beyond &= in_use;
+        if (Lane<S>::is_single && beyond != 0) screen_again(blocks, kept, beyond);
+        for (; beyond != 0; beyond &= beyond - 1)
             set_bit(scratch.is_undecided, static_cast<unsigned>(source.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
         scratch.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
 
@@ -123,50 +161,106 @@ private:
             for (unsigned j = 0; j < 8; ++j) {
                 const auto i = static_cast<std::size_t>(__builtin_ctzll(kept | last));
                 kept &= kept - 1;
-                queue.pairs[queue.size + k + j] = blocks + i / block_pairs * block_coordinates + i % block_pairs;
+                queue.pairs[queue.size + k + j] = in_blocks(blocks, i);
                 queue.numbers[queue.size + k + j] = static_cast<double>(source.number(first + i));
             }
         }
         queue.size += more;
     }
 
+    /// The pairs of a group that are beyond the range of single precision, in double. Those that stay beyond are left in `beyond`.
+    __attribute__((noinline)) void screen_again(const double* blocks, std::uint64_t& kept, std::uint64_t& beyond)
+    {
+        std::uint64_t still_beyond = 0;
+        for (std::size_t i = 0; i < group_pairs; i += width) {
+            const std::uint64_t lanes = beyond >> i & lanes_in_use<L>(width);
+            if (lanes == 0) continue;
+            PairRecord<L> record;
+            const Screening found = screen_again(in_blocks(blocks, i), record);
+            kept |= (found.kept & lanes) << i;
+            still_beyond |= (found.beyond & lanes) << i;
+        }
+        beyond = still_beyond;
+    }
+    FASTCCD_INLINE Screening screen_again(const double* coordinates, PairRecord<L>& record)
+    {
+        record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
+        return screen(record);
+    }
+
     /// Where most pairs go on: straight to the certificates on both halves, without a queue.
     void screen_dense_group(std::size_t first, std::size_t count)
     {
+        using S = typename Lane<L>::Screening;
         const double* const blocks = source.group(first);
         std::size_t kept = 0;
-        for (std::size_t i = 0; i < count; i += block_pairs) {
-            const double* const block = blocks + i * pair_coordinates;
-            source.at_block();
-            for (unsigned lane = 0; lane < block_pairs && i + lane < count; lane += width) {
-                source.at_batch(block);
-                PairRecord<L> record;
-                const Screening found = screen(block + lane, record);
-                record.pair = source.numbers(first + i + lane);
-                const unsigned in_use = lanes_in_use<L>(count - i - lane);
-                if ((in_use & found.beyond) != 0) leave_undecided(scratch, record.pair, in_use & found.beyond);
-                kept += static_cast<unsigned>(__builtin_popcount(in_use & found.kept));
-                examine(record, in_use & found.kept);
-            }
+        for (std::size_t i = 0; i < count; i += Lane<S>::width) {
+            const Parts<S> parts = next_parts<S>(blocks, i, count);
+            PairRecord<S> record;
+            record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters.t_max);
+            const Screening found = screen(record);
+            const unsigned in_use = lanes_in_use<S>(count - i);
+            if ((in_use & found.beyond) != 0) examine_again(parts, first + i, in_use & found.beyond);
+            unsigned lanes = in_use & found.kept;
+            kept += static_cast<unsigned>(__builtin_popcount(lanes));
+            const S mark = compare(record, lanes);
+            if (cutoff < 1.0 && lanes == 0) continue;
+            take<0>(parts, first + i, mark, lanes);
+            if constexpr (Parts<S>::count == 2) take<1>(parts, first + i, mark, lanes);
         }
         // Less than what leads here, so that shares around one half do not go to and fro.
         scratch.dense = 3 * kept >= count;
     }
 
-    /// Certificates that need more than screening has computed. Those on both halves include the quadratic one on the whole.
-    FASTCCD_INLINE void examine(PairRecord<L>& record, unsigned lanes)
+    /// Part k of what was examined goes on in double. Its motion is computed again: kept, it would be through memory as well.
+    template <unsigned k, class S>
+    FASTCCD_INLINE void take(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
+    {
+        PairRecord<L> record;
+        record.r = relative_motion<L>(parts.at[k], block_pairs, parameters.t_max);
+        record.pair = source.numbers(first + k * width) + Lane<L>::template widened<k>(mark);
+        root_stages.take(record, lanes >> k * width & lanes_in_use<L>(width));
+    }
+
+    /// Pairs beyond the range in which they were examined, in double.
+    template <class S>
+    __attribute__((noinline)) void examine_again(const Parts<S>& parts, std::size_t first, unsigned beyond)
+    {
+        for (unsigned k = 0; k < Parts<S>::count; ++k) {
+            const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
+            if (lanes == 0) continue;
+            PairRecord<L> record;
+            const Screening found = screen_again(parts.at[k], record);
+            record.pair = source.numbers(first + k * width);
+            leave_undecided(scratch, record.pair, lanes & found.beyond);
+            examine(record, lanes & found.kept);
+        }
+    }
+
+    /// Certificates that need more than screening has computed, for some lanes, of which those are left that have none. Returns their
+    /// window_mark. Those on both halves include the quadratic one on the whole.
+    template <class S>
+    FASTCCD_INLINE S compare(const PairRecord<S>& record, unsigned& lanes)
     {
         if (cutoff < 1.0) {
-            lanes &= ~Lane<L>::bits(apart_until_cutoff(record));
-            if (lanes == 0) return;  // as for most batches, once a contact is known
+            lanes &= ~Lane<S>::bits(apart_until_cutoff(record));
+            if (lanes == 0) return broadcast<S>(0.0);  // as for most batches, once a contact is known
         }
         const auto apart = visit_edge_functions<kind>(
             record.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, halves);
+                return halves_certificate<kind>(record.cubic, p, q, t, s, record.scale, bounds_of<S>().halves);
             });
-        // Even if no lane goes on, as in a third of the batches of four random pairs: no processor foresees which.
-        mark_window(record, apart);
-        root_stages.take(record, lanes & ~Lane<L>::bits(apart.first & apart.second));
+        lanes &= ~Lane<S>::bits(apart.first & apart.second);
+        return window_mark(apart);
+    }
+
+    FASTCCD_INLINE void examine(PairRecord<L>& record, unsigned lanes)
+    {
+        const L mark = compare(record, lanes);
+        if (cutoff < 1.0 && lanes == 0) return;
+        // Otherwise even if no lane goes on, as in a third of the batches of four random pairs: no processor foresees which.
+        record.pair = record.pair + mark;
+        root_stages.take(record, lanes);
     }
 
     /// Takes full batches from the end of [screened], so that what stays need not move; and the rest too if `all`.
@@ -201,13 +295,16 @@ private:
     }
 
     /// Certificates on [0, cutoff] and two leaves more, the rest of the one that the cutoff lies in and room for the rounding of this
-    /// sum: the certified search finds every leaf there apart, so toi is greater than the cutoff. Only the end of the motion moves.
-    FASTCCD_INLINE LaneMask<L> apart_until_cutoff(const PairRecord<L>& record)
+    /// sum, rounded up to what single precision can hold: the certified search finds every leaf there apart, so toi is greater
+    /// than the cutoff. Only the end of the motion moves.
+    template <class S>
+    FASTCCD_INLINE LaneMask<S> apart_until_cutoff(const PairRecord<S>& record)
     {
-        const L end = broadcast<L>(cutoff + 2 * parameters.leaf_width < 1.0 ? cutoff + 2 * parameters.leaf_width : 1.0);
-        const RelativeMotion<L> r{{record.r.start[0], record.r.start[1], record.r.start[2]},
+        const double until = (cutoff + 2 * parameters.leaf_width) * (1.0 + 0x1p-22);
+        const S end = broadcast<S>(until < 1.0 ? until : 1.0);
+        const RelativeMotion<S> r{{record.r.start[0], record.r.start[1], record.r.start[2]},
                                   {position(record.r, 0, end), position(record.r, 1, end), position(record.r, 2, end)}};
-        return part_certificate<kind>(r, record.scale, on_part);
+        return part_certificate<kind>(r, record.scale, bounds_of<S>().part);
     }
 };
 

@@ -13,7 +13,7 @@ template <class L>
 struct PairRecord {
     RelativeMotion<L> r;
     Scales<L> scale;
-    L pair;  ///< Index in the tile, as a double, plus a fraction: see mark_window.
+    L pair;  ///< Index in the tile, as a double, plus a fraction: see window_mark.
     // From the screening on, for the pair:
     CoplanarityCubic<L> cubic;
     // From the search for roots on, for one monotone piece in which the cubic changes sign:
@@ -31,13 +31,12 @@ struct Window {
 
 inline constexpr double first_half_apart = 0.25, second_half_apart = 0.375;
 
-/// Notes on which half a pair is apart, for one at most, as a fraction below one half of its number: a field less to queue.
+/// On which half a pair is apart, for one at most, as a fraction below one half that is added to its number: a field less to queue.
 template <class L>
-FASTCCD_INLINE void mark_window(PairRecord<L>& record, const ApartOnHalves<L>& apart)
+FASTCCD_INLINE L window_mark(const ApartOnHalves<L>& apart)
 {
     const L zero = broadcast<L>(0.0);
-    record.pair = record.pair + select<L>(apart.first, broadcast<L>(first_half_apart),
-                                          select<L>(apart.second, broadcast<L>(second_half_apart), zero));
+    return select<L>(apart.first, broadcast<L>(first_half_apart), select<L>(apart.second, broadcast<L>(second_half_apart), zero));
 }
 
 template <class L>

@@ -12,6 +12,7 @@
 #include <pipeline.hpp>
 
 #include "amount.hpp"
+#include "bounds/measured_bound.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
@@ -45,7 +46,7 @@ std::string lane_proof(const oracle::Pair& pair, const SearchParameters& paramet
     const bool linear = portable::linear_certificate<kind>(r, bounds.certificates(), extents).value;
     const auto scale = portable::scales(extents);
     const auto cubic = portable::coplanarity_cubic(r, portable::cross_product(r, 0, 1));
-    if (!portable::in_lane_range(cubic, extents, bounds).value) return {};
+    if (!portable::in_lane_range(cubic, extents, bounds.screening()).value) return {};
     if (linear) return "linear";
     if (portable::cubic_certificate(cubic, scale.volume, bounds.certificates()).value) return "cubic";
     const auto in_projections = [&](const portable::RelativeMotion<double>& motion, const CertificateBounds& chosen) {
@@ -82,6 +83,30 @@ std::string lane_proof(const oracle::Pair& pair, const SearchParameters& paramet
     return {};
 }
 
+/// Every proof of absence in single precision, as screening gives it.
+template <PairKind kind>
+std::string single_proof(const oracle::Pair& pair, const SearchParameters& parameters, Interval i)
+{
+    const ComputedInSingle c{coordinates(pair), parameters.t_max};
+    const auto given = [](const auto& mask) { return mask.value[0]; };
+    portable::Extents<Single> extents;
+    const bool linear = given(portable::linear_certificate<kind>(c.r, c.bounds.whole, extents));
+    const auto cubic = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
+    if (!given(portable::in_lane_range(cubic, extents, c.bounds))) return {};
+    if (linear) return "linear, single";
+    if (given(portable::cubic_certificate(cubic, c.scale.volume, c.bounds.whole))) return "cubic, single";
+    const auto on_halves = portable::visit_edge_functions<kind>(c.r, [&](const auto& p, const auto& q, const auto& t, const auto& s) {
+        return portable::halves_certificate<kind>(cubic, p, q, t, s, c.scale, c.bounds.halves);
+    });
+    const bool first = given(on_halves.first), second = given(on_halves.second);
+    if ((first && i.b <= 0.5) || (second && i.a >= 0.5) || (first && second)) return "halves, single";
+    const auto end = portable::broadcast<Single>(std::min(1.0, i.b * (1 + 0x1p-22)));
+    const portable::RelativeMotion<Single> part{{c.r.start[0], c.r.start[1], c.r.start[2]},
+                                                {portable::position(c.r, 0, end), portable::position(c.r, 1, end), portable::position(c.r, 2, end)}};
+    if (given(portable::part_certificate<kind>(part, c.scale, c.bounds.part))) return "part, single";
+    return {};
+}
+
 template <PairKind kind>
 std::string search_proof(const oracle::Pair& pair, const SearchParameters& parameters, Interval i)
 {
@@ -114,9 +139,11 @@ TEST(Certificates, NoneIsGivenAroundAContact)
                         const bool vf = kind == oracle::Kind::vertex_face;
                         const std::string given = vf ? lane_proof<PairKind::vertex_face>(pair, parameters, i)
                                                      : lane_proof<PairKind::edge_edge>(pair, parameters, i);
+                        const std::string in_single = vf ? single_proof<PairKind::vertex_face>(pair, parameters, i)
+                                                         : single_proof<PairKind::edge_edge>(pair, parameters, i);
                         const std::string searched = vf ? search_proof<PairKind::vertex_face>(pair, parameters, i)
                                                         : search_proof<PairKind::edge_edge>(pair, parameters, i);
-                        ASSERT_EQ(given + searched, "") << family << " t_max " << t_max << " on [" << i.a << ", " << i.b
+                        ASSERT_EQ(given + in_single + searched, "") << family << " t_max " << t_max << " on [" << i.a << ", " << i.b
                                                         << "] " << kind_name(kind) << ' ' << lossless(pair);
                     }
                 }

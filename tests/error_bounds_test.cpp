@@ -2,6 +2,7 @@
 // them: coefficients and values. Further files in bounds/: margins, monotone pieces, the area inclusion test.
 #include <area_inclusion.hpp>
 #include <bernstein.hpp>
+#include <halves_certificate.hpp>
 #include <magnitudes.hpp>
 #include <search_parameters.hpp>
 
@@ -14,9 +15,9 @@ namespace {
 constexpr double u = ErrorBounds::u;
 
 /// Error / bound of every coefficient of the three cross products r1 x r2, r2 x r3, r3 x r1 on the whole interval.
-double cross_product_ratio(const Input& in)
+template <class C>
+double ratio_of_cross_products(const Input& in, const C& c, double quadratic)
 {
-    const Computed c{in};
     const ExactRelativeMotion exact{in.x.data(), in.t_max};
     double worst = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -24,7 +25,7 @@ double cross_product_ratio(const Input& in)
         const auto q = portable::cross_product(c.r, static_cast<int>(i), static_cast<int>(j));
         const auto twice = twice_cross(exact.at(i, 0.0), exact.at(j, 0.0), exact.at(i, 1.0), exact.at(j, 1.0));
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double bound = c.bounds.quadratic() * area_of(c.scale, axis);
+            const double bound = quadratic * area_of(c.scale, axis);
             for (const Exact& error : {twice[0][axis] - Exact(2 * component(q.start, axis)),
                                        twice[2][axis] - Exact(2 * component(q.end, axis))})
                 worst = std::max(worst, error.magnitude_in(2 * bound));
@@ -34,9 +35,9 @@ double cross_product_ratio(const Input& in)
     return worst;
 }
 
-double cross_product_sum_ratio(const Input& in)
+template <class C>
+double ratio_of_sums(const Input& in, const C& c, double quadratic_sum)
 {
-    const Computed c{in};
     const ExactRelativeMotion r{in.x.data(), in.t_max};
     const auto sum = portable::subtract_then_add(portable::cross_product(c.r, 1, 2), portable::cross_product(c.r, 0, 2),
                                                  portable::cross_product(c.r, 0, 1));
@@ -44,7 +45,7 @@ double cross_product_sum_ratio(const Input& in)
                                    r.at(2, 1.0) - r.at(1, 1.0), r.at(0, 1.0) - r.at(1, 1.0));
     double worst = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double bound = c.bounds.quadratic_sum() * area_of(c.scale, axis);
+        const double bound = quadratic_sum * area_of(c.scale, axis);
         worst = std::max({worst, (twice[0][axis] - Exact(2 * component(sum.start, axis))).magnitude_in(2 * bound),
                           (twice[1][axis] - Exact(component(sum.twice_middle, axis))).magnitude_in(bound),
                           (twice[2][axis] - Exact(2 * component(sum.end, axis))).magnitude_in(2 * bound)});
@@ -52,17 +53,84 @@ double cross_product_sum_ratio(const Input& in)
     return worst;
 }
 
+template <class C>
+double ratio_of_cubics(const Input& in, const C& c, double cubic)
+{
+    const auto f = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
+    const auto thrice = thrice_cubic({in.x.data(), in.t_max}, 0.0, 1.0);
+    const double bound = cubic * number(c.scale.volume);
+    const Exact three = 3.0;
+    return std::max({(thrice[0] - three * Exact(number(f.start))).magnitude_in(3 * bound),
+                     (thrice[1] - Exact(number(f.thrice_second))).magnitude_in(bound),
+                     (thrice[2] - Exact(number(f.thrice_third))).magnitude_in(bound),
+                     (thrice[3] - three * Exact(number(f.end))).magnitude_in(3 * bound)});
+}
+
+double cross_product_ratio(const Input& in)
+{
+    const Computed c{in};
+    return ratio_of_cross_products(in, c, c.bounds.quadratic());
+}
+double cross_product_sum_ratio(const Input& in)
+{
+    const Computed c{in};
+    return ratio_of_sums(in, c, c.bounds.quadratic_sum());
+}
 double cubic_ratio(const Input& in)
 {
     const Computed c{in};
-    const auto f = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
-    const auto thrice = thrice_cubic({in.x.data(), in.t_max}, 0.0, 1.0);
-    const double bound = c.bounds.cubic() * c.scale.volume;
-    const Exact three = 3.0;
-    return std::max({(thrice[0] - three * Exact(f.start)).magnitude_in(3 * bound),
-                     (thrice[1] - Exact(f.thrice_second)).magnitude_in(bound),
-                     (thrice[2] - Exact(f.thrice_third)).magnitude_in(bound),
-                     (thrice[3] - three * Exact(f.end)).magnitude_in(3 * bound)});
+    return ratio_of_cubics(in, c, c.bounds.cubic());
+}
+
+/// A ratio in single precision; 0 for pairs beyond its range, which are screened in double.
+template <class Ratio>
+auto in_single(Ratio ratio)
+{
+    return [=](const Input& in) {
+        const ComputedInSingle c{in.x.data(), in.t_max};
+        const auto f = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
+        return portable::in_lane_range(f, c.extents, c.bounds).value[0] ? ratio(in, c) : 0.0;
+    };
+}
+
+/// Of differences between components of r1, r2, r3. Over a whole step, where signs are certain and the bound is 0, as multiples of what
+/// holds for the rounded values.
+double ratio_of_gaps(const Input& in, const ComputedInSingle& c)
+{
+    const ExactRelativeMotion exact{in.x.data(), in.t_max};
+    const double linear = in.t_max == 1.0 ? (2 + 2 + ErrorBounds::slack) * ErrorBounds::single_u : c.bounds.whole.linear;
+    const Single extents[] = {c.extents.x, c.extents.y, c.extents.z};
+    double worst = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto gap = [&](const portable::Vector3<Single>& a, const portable::Vector3<Single>& b) {
+            return Exact(component(portable::subtract(a, b), axis));
+        };
+        const double bound = linear * std::max(number(extents[axis]), single_length_floor);
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t j = (i + 1) % 3;
+            const Exact at_start = exact.at(i, 0.0)[axis] - exact.at(j, 0.0)[axis] - gap(c.r.start[i], c.r.start[j]);
+            const Exact at_end = exact.at(i, 1.0)[axis] - exact.at(j, 1.0)[axis] - gap(c.r.end[i], c.r.end[j]);
+            worst = std::max({worst, at_start.magnitude_in(bound), at_end.magnitude_in(bound)});
+        }
+    }
+    return worst;
+}
+
+/// Of multiples of the cubic's coefficients on both halves.
+double ratio_of_halved_cubics(const Input& in, const ComputedInSingle& c)
+{
+    const auto f = portable::halved(portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1)));
+    const double bound = c.bounds.halves.cubic * number(c.scale.volume);
+    const ExactRelativeMotion exact{in.x.data(), in.t_max};
+    const auto first = thrice_cubic(exact, 0.0, 0.5), second = thrice_cubic(exact, 0.5, 1.0);
+    const double multiple[] = {1, 6, 12, 8};
+    double worst = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Exact three = 3.0, on_first = first[k] * Exact(multiple[k]) - three * Exact(number(f.first[k]));
+        const Exact on_second = second[3 - k] * Exact(multiple[k]) - three * Exact(number(f.second[3 - k]));
+        worst = std::max({worst, on_first.magnitude_in(3 * bound), on_second.magnitude_in(3 * bound)});
+    }
+    return worst;
 }
 
 /// On [a, b], as a multiple of the bound from extents or of the one from magnitudes.
@@ -145,6 +213,25 @@ TEST(ErrorBounds, QuadraticCoefficients)
 {
     expect_bound("quadratic", 0.02, cross_product_ratio);
     expect_bound("quadratic_sum", 0.02, cross_product_sum_ratio);
+}
+
+TEST(ErrorBounds, CoefficientsInSinglePrecision)
+{
+    // As lanes meet them, and with axes below what single precision takes for zero.
+    for (const Shifts shifts : {ordinary_shifts, Shifts{-80, 38}}) {
+        const double least = shifts.smallest < -40 ? 0.0 : 0.02;
+        expect_bound("quadratic, single", least, in_single([](const Input& in, const ComputedInSingle& c) {
+            return ratio_of_cross_products(in, c, c.bounds.whole.quadratic);
+        }), shifts);
+        expect_bound("quadratic_sum, single", least, in_single([](const Input& in, const ComputedInSingle& c) {
+            return ratio_of_sums(in, c, c.bounds.whole.quadratic_sum);
+        }), shifts);
+        expect_bound("cubic, single", least, in_single([](const Input& in, const ComputedInSingle& c) {
+            return ratio_of_cubics(in, c, c.bounds.whole.cubic);
+        }), shifts);
+        expect_bound("gap, single", least, in_single(ratio_of_gaps), shifts);
+        expect_bound("cubic on halves, single", least, in_single(ratio_of_halved_cubics), shifts);
+    }
 }
 
 TEST(ErrorBounds, CubicCoefficients) { expect_bound("cubic", 0.02, cubic_ratio); }

@@ -85,6 +85,18 @@ mutant 'cubic_bound = 0' kernels/magnitudes.hpp 's/(\(3 \* bounds\.rho \+ 18 \+ 
 mutant 'underflow_share = 0' kernels/magnitudes.hpp 's/underflow_share = 0x1p-40/underflow_share = 0/' error_bounds_test
 mutant 'length_floor = 0' $bounds 's/length_floor = 0x1p-266/length_floor = 0/' error_bounds_test
 mutant 'smallest_volume = 0' $bounds 's/smallest_volume = 0x1p-300/smallest_volume = 0/' same_bits_test certificates_test truth_test stress
+mutant 'single: cubic = 0' $bounds 's/\(54 \+ 114 \+ slack\) \* single_u/0.0/' error_bounds_test
+mutant 'single: quadratic = 0' $bounds 's/\(8 \+ 12 \+ slack\) \* single_u/0.0/' error_bounds_test
+mutant 'single: quadratic_sum = 0' $bounds 's/\(24 \+ 56 \+ slack\) \* single_u/0.0/' error_bounds_test
+mutant 'single: gap = 0' $bounds 's/\(2 \+ 2 \+ slack\) \* single_u;/0.0;/' error_bounds_test
+mutant 'single: halves, cubic = 0' $bounds 's/\(216 \+ 588 \+ slack\) \* single_u/0.0/' error_bounds_test
+mutant 'single: halves, quadratic = 0' $bounds 's/\(16 \+ 36 \+ slack\) \* single_u/0.0/' certificates_test wide_lane_test
+mutant 'single: halves, quadratic_sum = 0' $bounds 's/\(48 \+ 148 \+ slack\) \* single_u/0.0/' certificates_test wide_lane_test
+mutant 'single: part, cubic = 0' $bounds 's/\(54 \* end_rho \+ 114 \+ slack\) \* single_u/0.0/' certificates_test
+mutant 'single: part, quadratic = 0' $bounds 's/\(8 \* end_rho \+ 12 \+ slack\) \* single_u/0.0/' certificates_test
+mutant 'single: part, quadratic_sum = 0' $bounds 's/\(24 \* end_rho \+ 56 \+ slack\) \* single_u/0.0/' certificates_test
+mutant 'single: floor as in double' $bounds 's/single_length_floor = 0x1p-40/single_length_floor = 0/' error_bounds_test
+mutant 'single: the other part of a batch' simd/pipeline.hpp 's/L>\(parts\.at\[k\], block_pairs/L>(parts.at[0], block_pairs/' wide_lane_test
 mutant 'lanes without largest extent' $bounds 's/t_max == 1\.0 \? largest_extent : 0\.25 \* largest_extent \* t_max/1e308/' certificates_test same_bits_test truth_test stress
 mutant 'rho of shorter steps = 1' $bounds 's/t_max == 1\.0 \? 1\.0 : 10\.0/1.0/' error_bounds_test
 mutant 'hull_deviation = 0' $bounds 's/hull_deviation = 4\.0/hull_deviation = 0/' error_bounds_test

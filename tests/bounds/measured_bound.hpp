@@ -6,6 +6,7 @@
 #include <certificates.hpp>
 
 #include "adversary.hpp"
+#include "array_lane.hpp"
 
 namespace fastccd::testing {
 
@@ -25,13 +26,36 @@ struct Computed {
     }
 };
 
-inline double component(const portable::Vector3<double>& v, std::size_t axis)
+/// Pairs as screening sees them in single precision.
+using Single = portable::Array<float, 2>;
+
+struct ComputedInSingle {
+    portable::RelativeMotion<Single> r;
+    portable::Extents<Single> extents;
+    portable::Scales<Single> scale;
+    ScreeningBounds bounds;
+
+    explicit ComputedInSingle(const double* coordinates, double t_max)
+        : r{portable::relative_motion_in<Single, portable::Array<double, 1>>({coordinates, coordinates}, 1, t_max)},
+          bounds{ErrorBounds{t_max}.screening_in_single()}
+    {
+        portable::linear_certificate<PairKind::vertex_face>(r, bounds.whole, extents);
+        scale = portable::scales(extents);
+    }
+};
+
+inline double number(double x) { return x; }
+inline double number(Single x) { return double{x.value[0]}; }
+
+template <class L>
+double component(const portable::Vector3<L>& v, std::size_t axis)
 {
-    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+    return number(axis == 0 ? v.x : axis == 1 ? v.y : v.z);
 }
-inline double area_of(const portable::Scales<double>& s, std::size_t axis)
+template <class L>
+double area_of(const portable::Scales<L>& s, std::size_t axis)
 {
-    return axis == 0 ? s.yz : axis == 1 ? s.zx : s.xy;
+    return number(axis == 0 ? s.yz : axis == 1 ? s.zx : s.xy);
 }
 
 /// Exponents of the scales of the three axes; the axes of one input are scaled apart.

@@ -1,0 +1,163 @@
+// Portable lane types of any width and either precision, one operation after the other: the logic of the widest batches, on machines
+// without them, and single precision where no batch is built.
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+
+#include <lane.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+template <class T, unsigned n>
+struct Array {
+    T value[n];
+};
+
+template <class R, class Operation>
+R each(Operation operation)
+{
+    R result;
+    unsigned i = 0;
+    for (auto& value : result.value) value = operation(i++);
+    return result;
+}
+
+template <class T, unsigned n>
+Array<T, n> operator+(Array<T, n> a, Array<T, n> b)
+{
+    return each<Array<T, n>>([&](unsigned i) { return a.value[i] + b.value[i]; });
+}
+template <class T, unsigned n>
+Array<T, n> operator-(Array<T, n> a, Array<T, n> b)
+{
+    return each<Array<T, n>>([&](unsigned i) { return a.value[i] - b.value[i]; });
+}
+template <class T, unsigned n>
+Array<T, n> operator*(Array<T, n> a, Array<T, n> b)
+{
+    return each<Array<T, n>>([&](unsigned i) { return a.value[i] * b.value[i]; });
+}
+template <class T, unsigned n>
+Array<T, n> operator/(Array<T, n> a, Array<T, n> b)
+{
+    return each<Array<T, n>>([&](unsigned i) { return a.value[i] / b.value[i]; });
+}
+template <unsigned n>
+Array<bool, n> operator&(Array<bool, n> a, Array<bool, n> b)
+{
+    return each<Array<bool, n>>([&](unsigned i) { return a.value[i] && b.value[i]; });
+}
+template <unsigned n>
+Array<bool, n> operator|(Array<bool, n> a, Array<bool, n> b)
+{
+    return each<Array<bool, n>>([&](unsigned i) { return a.value[i] || b.value[i]; });
+}
+template <unsigned n>
+Array<bool, n> operator!(Array<bool, n> a)
+{
+    return each<Array<bool, n>>([&](unsigned i) { return !a.value[i]; });
+}
+
+template <class T, unsigned n>
+struct Lane<Array<T, n>> {
+    using One = Lane<double>;
+    using Values = Array<T, n>;
+    using Mask = Array<bool, n>;
+    static constexpr unsigned width = n;
+    static constexpr bool is_single = std::is_same_v<T, float>;
+    using Screening = Array<float, 2 * n>;
+    using SparseScreening = Screening;
+    static Screening narrowed(Values low, Values high)
+    {
+        return each<Screening>([&](unsigned i) { return static_cast<float>(i < n ? low.value[i] : high.value[i - n]); });
+    }
+    template <unsigned part>
+    static Values widened(Screening x)
+    {
+        return each<Values>([&](unsigned i) { return T{x.value[part * n + i]}; });
+    }
+
+    static Values broadcast(double x)
+    {
+        return each<Values>([&](unsigned) { return static_cast<T>(x); });
+    }
+    static Values load(const T* p)
+    {
+        return each<Values>([&](unsigned i) { return p[i]; });
+    }
+    static void store(T* p, Values x)
+    {
+        for (unsigned i = 0; i < n; ++i) p[i] = x.value[i];
+    }
+    struct Collector {
+        Collector(const double* /*blocks*/, const double* const* pairs_) : pairs{pairs_} {}
+        Values operator()(int c) const
+        {
+            return each<Values>([&](unsigned i) { return pairs[i][std::size_t(c) * block_pairs]; });
+        }
+        const double* const* pairs;
+    };
+    static Values lane_number()
+    {
+        return each<Values>([](unsigned i) { return T(i); });
+    }
+    static Values min(Values a, Values b)
+    {
+        return each<Values>([&](unsigned i) { return a.value[i] < b.value[i] ? a.value[i] : b.value[i]; });
+    }
+    static Values max(Values a, Values b)
+    {
+        return each<Values>([&](unsigned i) { return a.value[i] > b.value[i] ? a.value[i] : b.value[i]; });
+    }
+    static Values abs(Values a)
+    {
+        return each<Values>([&](unsigned i) { return std::fabs(a.value[i]); });
+    }
+    static Values negated(Values a)
+    {
+        return each<Values>([&](unsigned i) { return -a.value[i]; });
+    }
+    static Values times_sign(Values a, Values b)
+    {
+        return each<Values>([&](unsigned i) { return std::signbit(b.value[i]) ? -a.value[i] : a.value[i]; });
+    }
+    static Values difference(Values a, Values b) { return a - b; }
+    static Values sqrt(Values a)
+    {
+        return each<Values>([&](unsigned i) { return std::sqrt(a.value[i]); });
+    }
+    static Values select(Mask m, Values yes, Values no)
+    {
+        return each<Values>([&](unsigned i) { return m.value[i] ? yes.value[i] : no.value[i]; });
+    }
+    static Mask less(Values a, Values b)
+    {
+        return each<Mask>([&](unsigned i) { return a.value[i] < b.value[i]; });
+    }
+    static Mask less_equal(Values a, Values b)
+    {
+        return each<Mask>([&](unsigned i) { return a.value[i] <= b.value[i]; });
+    }
+    static unsigned bits(Mask m)
+    {
+        unsigned result = 0;
+        for (unsigned i = 0; i < n; ++i) result |= unsigned{m.value[i]} << i;
+        return result;
+    }
+    static void compress_store(T* p, unsigned bits, Values x)
+    {
+        for (unsigned i = 0; i < n; ++i)
+            if ((bits >> i & 1u) != 0) *p++ = x.value[i];
+    }
+    static constexpr unsigned transposed_records = One::transposed_records;
+    static void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        One::transpose_records(records, start, end, stride);
+    }
+    using FirstBox = One::FirstBox;
+    static FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return One::first_box(box, separation); }
+    static bool apart(const FirstBox& first, const GridBox& second) { return One::apart(first, second); }
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
