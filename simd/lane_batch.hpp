@@ -326,13 +326,37 @@ struct BatchTraits<xsimd::neon64> {
 };
 #endif
 
-template <class A>
-struct Lane<xsimd::batch<double, A>> {
-    using Batch = xsimd::batch<double, A>;
-    using Mask = xsimd::batch_bool<double, A>;
+/// What certificates are computed with, in either precision.
+template <class T, class A>
+struct BatchArithmetic {
+    using Batch = xsimd::batch<T, A>;
+    using Mask = xsimd::batch_bool<T, A>;
     using Traits = BatchTraits<A>;
     static constexpr unsigned width = Batch::size;
-    static constexpr bool is_single = false;
+    static constexpr bool is_single = sizeof(T) == sizeof(float);
+
+    static FASTCCD_INLINE Batch broadcast(double x) { return Batch(static_cast<T>(x)); }
+
+    static FASTCCD_INLINE Batch min(Batch a, Batch b) { return Traits::min(a, b); }
+    static FASTCCD_INLINE Batch max(Batch a, Batch b) { return Traits::max(a, b); }
+    static FASTCCD_INLINE Batch abs(Batch a) { return xsimd::abs(a); }
+    static FASTCCD_INLINE Batch negated(Batch a) { return a ^ broadcast(-0.0); }
+    static FASTCCD_INLINE Batch times_sign(Batch a, Batch b) { return a ^ (b & broadcast(-0.0)); }
+    static FASTCCD_INLINE Batch select(Mask m, Batch yes, Batch no) { return xsimd::select(m, yes, no); }
+
+    static FASTCCD_INLINE Mask less(Batch a, Batch b) { return a < b; }
+    static FASTCCD_INLINE Mask less_equal(Batch a, Batch b) { return a <= b; }
+    static FASTCCD_INLINE unsigned bits(Mask m) { return Traits::bits(m.data); }
+};
+
+template <class A>
+struct Lane<xsimd::batch<float, A>> : BatchArithmetic<float, A> {};
+
+template <class A>
+struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
+    using Batch = xsimd::batch<double, A>;
+    using Traits = BatchTraits<A>;
+
     using Screening = xsimd::batch<float, A>;
     using SparseScreening = std::conditional_t<Traits::screens_scenes_in_single, Screening, Batch>;
     /// Both rounded, one behind the other, and back.
@@ -343,7 +367,6 @@ struct Lane<xsimd::batch<double, A>> {
         return part == 0 ? Traits::widened_low(x) : Traits::widened_high(x);
     }
 
-    static FASTCCD_INLINE Batch broadcast(double x) { return Batch(x); }
     static FASTCCD_INLINE Batch load(const double* p) { return Batch::load_unaligned(p); }
     static FASTCCD_INLINE void store(double* p, Batch x) { x.store_unaligned(p); }
     using Collector = typename Traits::Collector;
@@ -353,19 +376,8 @@ struct Lane<xsimd::batch<double, A>> {
         return Batch::load_unaligned(numbers);
     }
 
-    static FASTCCD_INLINE Batch min(Batch a, Batch b) { return Traits::min(a, b); }
-    static FASTCCD_INLINE Batch max(Batch a, Batch b) { return Traits::max(a, b); }
-    static FASTCCD_INLINE Batch abs(Batch a) { return xsimd::abs(a); }
-    static FASTCCD_INLINE Batch negated(Batch a) { return a ^ broadcast(-0.0); }
-    static FASTCCD_INLINE Batch times_sign(Batch a, Batch b) { return a ^ (b & broadcast(-0.0)); }
     static FASTCCD_INLINE Batch difference(Batch a, Batch b) { return Traits::difference(a, b); }
     static FASTCCD_INLINE Batch sqrt(Batch a) { return xsimd::sqrt(a); }
-    static FASTCCD_INLINE Batch select(Mask m, Batch yes, Batch no) { return xsimd::select(m, yes, no); }
-
-    static FASTCCD_INLINE Mask less(Batch a, Batch b) { return a < b; }
-    static FASTCCD_INLINE Mask less_equal(Batch a, Batch b) { return a <= b; }
-
-    static FASTCCD_INLINE unsigned bits(Mask m) { return Traits::bits(m.data); }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, Batch x) { Traits::compress_store(p, bits, x); }
 
     static constexpr unsigned transposed_records = Traits::transposed_records;
@@ -377,28 +389,6 @@ struct Lane<xsimd::batch<double, A>> {
     using FirstBox = typename Traits::FirstBox;
     static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return Traits::first_box(box, separation); }
     static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second) { return Traits::apart(first, second); }
-};
-
-template <class A>
-struct Lane<xsimd::batch<float, A>> {
-    using Batch = xsimd::batch<float, A>;
-    using Mask = xsimd::batch_bool<float, A>;
-    using Traits = BatchTraits<A>;
-    static constexpr unsigned width = Batch::size;
-    static constexpr bool is_single = true;
-
-    static FASTCCD_INLINE Batch broadcast(double x) { return Batch(static_cast<float>(x)); }
-
-    static FASTCCD_INLINE Batch min(Batch a, Batch b) { return Traits::min(a, b); }
-    static FASTCCD_INLINE Batch max(Batch a, Batch b) { return Traits::max(a, b); }
-    static FASTCCD_INLINE Batch abs(Batch a) { return xsimd::abs(a); }
-    static FASTCCD_INLINE Batch negated(Batch a) { return a ^ broadcast(-0.0); }
-    static FASTCCD_INLINE Batch times_sign(Batch a, Batch b) { return a ^ (b & broadcast(-0.0)); }
-
-    static FASTCCD_INLINE Batch select(Mask m, Batch yes, Batch no) { return xsimd::select(m, yes, no); }
-    static FASTCCD_INLINE Mask less(Batch a, Batch b) { return a < b; }
-    static FASTCCD_INLINE Mask less_equal(Batch a, Batch b) { return a <= b; }
-    static FASTCCD_INLINE unsigned bits(Mask m) { return Traits::bits(m.data); }
 };
 
 // Found by argument, xsimd::min and max would be preferred to the templates of lane.hpp, and on NEON they propagate NaN. These are
