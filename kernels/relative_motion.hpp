@@ -58,34 +58,41 @@ FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int 
     return relative_motion_of<L>([=](int c) FASTCCD_INLINE_LAMBDA { return Lane<L>::load(coordinates + c * stride); }, t_max);
 }
 
+/// The motions of two batches, of coordinates parts[k][c * stride + lane], combined component by component by combine(first, second),
+/// called in the order in which a RelativeMotion holds them. Not batch by batch: all components of one would not fit into registers.
+template <class L, class Combine>
+FASTCCD_INLINE auto combined_motion(const double* const (&parts)[2], int stride, double t_max, Combine combine)
+{
+    using Combined = decltype(combine(L{}, L{}));
+    const auto motion = [&](auto component) FASTCCD_INLINE_LAMBDA -> RelativeMotion<Combined> {
+        const auto point = [&](int end, int i) FASTCCD_INLINE_LAMBDA -> Vector3<Combined> {
+            const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
+                return combine(component(parts[0], end, i, axis), component(parts[1], end, i, axis));
+            };
+            return {along(0), along(1), along(2)};
+        };
+        return {{point(0, 1), point(0, 2), point(0, 3)}, {point(1, 1), point(1, 2), point(1, 3)}};
+    };
+    const auto difference = [&](const double* part, int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
+        const double* const at = part + (12 * end + axis) * stride;
+        return Lane<L>::difference(Lane<L>::load(at + 3 * i * stride), Lane<L>::load(at));
+    };
+    if (t_max == 1.0) return motion(difference);
+    return motion([&](const double* part, int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
+        const L start = difference(part, 0, i, axis);
+        return end == 0 ? start : lerp(start, difference(part, 1, i, axis), broadcast<L>(t_max));
+    });
+}
+
 /// The same in the lane type S that pairs are screened in: L, or one of single precision, whose lanes hold two batches of L. Lanes of part k
 /// are of parts[k][c * stride + lane]. Differences are rounded to S at the end: by at most u X once more, with its u.
 template <class S, class L, std::size_t part_count>
 FASTCCD_INLINE RelativeMotion<S> relative_motion_in(const double* const (&parts)[part_count], int stride, double t_max)
 {
-    if constexpr (!Lane<S>::is_single) {
+    if constexpr (!Lane<S>::is_single)
         return relative_motion<L>(parts[0], stride, t_max);
-    } else {
-        // Component by component, not part by part: all of a part's would not fit into registers.
-        const auto motion = [](auto component) FASTCCD_INLINE_LAMBDA -> RelativeMotion<S> {
-            const auto point = [&](int end, int i) FASTCCD_INLINE_LAMBDA -> Vector3<S> {
-                const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
-                    return Lane<L>::narrowed(component(0, end, i, axis), component(1, end, i, axis));
-                };
-                return {along(0), along(1), along(2)};
-            };
-            return {{point(0, 1), point(0, 2), point(0, 3)}, {point(1, 1), point(1, 2), point(1, 3)}};
-        };
-        const auto difference = [&](int part, int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
-            const double* const at = parts[part] + (12 * end + axis) * stride;
-            return Lane<L>::difference(Lane<L>::load(at + 3 * i * stride), Lane<L>::load(at));
-        };
-        if (t_max == 1.0) return motion(difference);
-        return motion([&](int part, int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
-            const L start = difference(part, 0, i, axis);
-            return end == 0 ? start : lerp(start, difference(part, 1, i, axis), broadcast<L>(t_max));
-        });
-    }
+    else
+        return combined_motion<L>(parts, stride, t_max, [](L low, L high) FASTCCD_INLINE_LAMBDA { return Lane<L>::narrowed(low, high); });
 }
 
 /// Largest |component| per axis over r1, r2, r3 and both ends: the scale of every rounding error.

@@ -142,6 +142,33 @@ struct BatchTraits<xsimd::avx2> : WideBoxes {
         const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[bits]));
         _mm256_storeu_pd(p, _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(x), order)));
     }
+    class Joiner {
+    public:
+        FASTCCD_INLINE explicit Joiner(unsigned bits)
+        {
+            const unsigned low = bits & 15, high = bits >> 4;
+            const int from_low = __builtin_popcount(low);
+            // Those of the second batch come after `from_low` doubles of the first.
+            alignas(64) static constexpr int behind[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7};
+            const __m256i shift = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(behind + 8 - 2 * from_low));
+            low_order_ = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[low]));
+            high_order_ = _mm256_permutevar8x32_epi32(
+                _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[high])), shift);
+            is_high_ = _mm256_castsi256_pd(_mm256_cmpgt_epi64(_mm256_set_epi64x(4, 3, 2, 1), _mm256_set1_epi64x(from_low)));
+        }
+        FASTCCD_INLINE __m256d operator()(__m256d low, __m256d high) const
+        {
+            return _mm256_blendv_pd(permuted(low, low_order_), permuted(high, high_order_), is_high_);
+        }
+
+    private:
+        static FASTCCD_INLINE __m256d permuted(__m256d x, __m256i order)
+        {
+            return _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(x), order));
+        }
+        __m256i low_order_, high_order_;
+        __m256d is_high_;
+    };
     static FASTCCD_INLINE unsigned bits(__m256 m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
     static constexpr bool screens_scenes_in_single = true;
     static FASTCCD_INLINE __m256 min(__m256 a, __m256 b) { return _mm256_min_ps(a, b); }
@@ -241,6 +268,18 @@ struct BatchTraits<xsimd::avx512bw> : WideBoxes {
         const __m512i order = _mm512_maskz_compress_epi64(static_cast<__mmask8>(bits), _mm512_set_epi64(7, 6, 5, 4, 3, 2, 1, 0));
         _mm512_storeu_pd(p, _mm512_permutexvar_pd(order, x));
     }
+    class Joiner {
+    public:
+        FASTCCD_INLINE explicit Joiner(unsigned bits)
+            : order_{_mm512_maskz_cvtepu32_epi64(0xff, _mm512_castsi512_si256(_mm512_maskz_compress_epi32(
+                  static_cast<__mmask16>(bits), _mm512_set_epi32(15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0))))}
+        {
+        }
+        FASTCCD_INLINE __m512d operator()(__m512d low, __m512d high) const { return _mm512_permutex2var_pd(low, order_, high); }
+
+    private:
+        __m512i order_;
+    };
     static FASTCCD_INLINE unsigned bits(__mmask16 m) { return m; }
     /// Not where few pairs go on: scenes took a tenth longer on Zen 4, where half of the work is to convert (bench/README.md).
     static constexpr bool screens_scenes_in_single = false;
@@ -379,6 +418,11 @@ struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
     static FASTCCD_INLINE Batch difference(Batch a, Batch b) { return Traits::difference(a, b); }
     static FASTCCD_INLINE Batch sqrt(Batch a) { return xsimd::sqrt(a); }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, Batch x) { Traits::compress_store(p, bits, x); }
+    /// Whether there is a Joiner{bits}: for `bits` of two batches, not more than one holds, joiner(low, high) are those lanes, in order,
+    /// and any others behind them. With batches of two lanes, too often more are wanted.
+    static constexpr bool can_join = requires { typename Traits::Joiner; };
+    template <class T = Traits>
+    using Joiner = typename T::Joiner;
 
     static constexpr unsigned transposed_records = Traits::transposed_records;
     static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)

@@ -205,14 +205,43 @@ private:
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
             if (cutoff < 1.0 && lanes == 0) continue;
-            take<0>(parts, first + i, mark, lanes);
-            if constexpr (Parts<S>::count == 2) take<1>(parts, first + i, mark, lanes);
+            take_parts(parts, first + i, mark, lanes);
         }
         // Less than what leads here, so that shares around one half do not go to and fro.
         scratch.dense = 3 * kept >= count;
     }
 
-    /// Part k of what was examined goes on in double. Its motion is computed again: kept, it would be through memory as well.
+    /// What was examined goes on in double: both parts at once if that makes a batch at most, since a store for each field and batch
+    /// is most of what queueing takes (bench/README.md).
+    template <class S>
+    FASTCCD_INLINE void take_parts(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
+    {
+        if constexpr (Parts<S>::count == 2) {
+            if constexpr (Lane<L>::can_join) {
+                const auto count = static_cast<unsigned>(__builtin_popcount(lanes));
+                if (count <= width) [[likely]]
+                    return take_joined(parts, first, mark, lanes, count);
+            }
+            take<0>(parts, first, mark, lanes);
+            take<1>(parts, first, mark, lanes);
+        } else {
+            take<0>(parts, first, mark, lanes);
+        }
+    }
+
+    template <class S>
+    FASTCCD_INLINE void take_joined(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes, unsigned count)
+    {
+        const typename Lane<L>::template Joiner<> joiner{lanes};
+        root_stages.take_fields(count, [&](auto append) FASTCCD_INLINE_LAMBDA {
+            const auto append_joined = [&](L low, L high) FASTCCD_INLINE_LAMBDA { return append(joiner(low, high)); };
+            combined_motion<L>(parts.at, block_pairs, parameters.t_max, append_joined);
+            append_joined(source.numbers(first) + Lane<L>::template widened<0>(mark),
+                          source.numbers(first + width) + Lane<L>::template widened<1>(mark));
+        });
+    }
+
+    /// Part k of what was examined. Its motion is computed again: kept, it would be through memory as well.
     template <unsigned k, class S>
     FASTCCD_INLINE void take(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
     {

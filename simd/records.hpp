@@ -106,6 +106,23 @@ FASTCCD_INLINE void push(Queue& queue, unsigned bits, const Record<L>& record)
     });
 }
 
+/// Appends the first `count` lanes of fields that come one after the other, in the order of for_each_field: of a whole record, many would
+/// leave the registers before they are stored.
+template <class Queue, class L>
+class Appender {
+public:
+    FASTCCD_INLINE Appender(Queue& queue, unsigned count) : next_{&queue.data[0][queue.size]} { queue.size += count; }
+    FASTCCD_INLINE L operator()(L field)
+    {
+        Lane<L>::store(next_, field);
+        next_ += Queue::capacity;
+        return field;
+    }
+
+private:
+    double* next_;
+};
+
 /// Lanes first, first + 1, ... of the queue; whatever lies past its end in the last ones.
 template <class Queue, template <class> class Record, class L>
 FASTCCD_INLINE void read(const Queue& queue, unsigned first, Record<L>& record)

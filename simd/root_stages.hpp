@@ -23,7 +23,14 @@ public:
     FASTCCD_INLINE void take(const PairRecord<L>& record, unsigned lanes)
     {
         push(scratch.candidates, lanes, record);
-        if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
+        find_roots_if_many();
+    }
+    /// The same of `count` candidates: fields(append) calls append for each field.
+    template <class Fields>
+    FASTCCD_INLINE void take_fields(unsigned count, Fields fields)
+    {
+        fields(Appender<PairQueue, L>{scratch.candidates, count});
+        find_roots_if_many();
     }
 
     /// Empties all queues.
@@ -38,6 +45,11 @@ private:
 
     const SearchParameters& parameters;
     TileScratch& scratch;
+
+    FASTCCD_INLINE void find_roots_if_many()
+    {
+        if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
+    }
 
     /// The pieces in which the cubic changes sign, and a few steps towards the root in the first of them. Every step is done for all
     /// batches before the next one, so that divisions and roots of many batches are under way at once.

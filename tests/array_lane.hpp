@@ -150,6 +150,20 @@ struct Lane<Array<T, n>> {
         for (unsigned i = 0; i < n; ++i)
             if ((bits >> i & 1u) != 0) *p++ = x.value[i];
     }
+    static constexpr bool can_join = true;
+    template <class = void>
+    struct Joiner {
+        explicit Joiner(unsigned bits_) : bits{bits_} {}
+        Values operator()(Values low, Values high) const
+        {
+            Values joined = low;
+            unsigned count = 0;
+            for (unsigned i = 0; i < 2 * n; ++i)
+                if ((bits >> i & 1u) != 0) joined.value[count++] = i < n ? low.value[i] : high.value[i - n];
+            return joined;
+        }
+        unsigned bits;
+    };
     static constexpr unsigned transposed_records = One::transposed_records;
     static void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
     {
