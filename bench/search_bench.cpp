@@ -51,7 +51,7 @@ void run_pipeline(PairKind kind, Isa isa, const PairView& view, const SearchPara
     source.size = view.size();
     for (std::size_t first = 0; first < view.size(); first += tile_pairs) {
         const std::size_t count = std::min(tile_pairs, view.size() - first);
-        kernel_table(isa)->run_tile({kind, &source, first, count, &parameters, 1.0, prefetched_cache()}, scratch);
+        kernel_table(isa)->run_tile({kind, &source, first, count, &parameters, 1.0, preferences()}, scratch);
         for (std::size_t i = 0; i < count; ++i)
             if ((scratch.is_undecided[i / 64] >> i % 64 & 1) != 0) visit(first + i);
     }

@@ -105,11 +105,16 @@ struct TileScratch {
     const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
 };
 
-/// The cache into which packed pairs are asked for before they are read.
 enum class CacheLevel : std::uint8_t { first, second };
 
-/// Which one this machine's processor is faster with.
-CacheLevel prefetched_cache() noexcept;
+/// Ways to go about a tile of which some processors are faster with one, some with the other. No result depends on them.
+struct Preferences {
+    CacheLevel into = CacheLevel::first;  ///< The cache into which packed pairs are asked for before they are read.
+    bool scenes_in_double = false;        ///< Screens in double where few pairs go on, if lanes have the choice; else in single precision.
+};
+
+/// Those of this machine's processor.
+Preferences preferences() noexcept;
 
 /// `count` pairs of the source from `first` on; first is a multiple of group_pairs, count at most tile_pairs.
 struct TileRequest {
@@ -120,7 +125,7 @@ struct TileRequest {
     const SearchParameters* parameters;
     /// Pairs whose toi is certainly greater than cutoff t_max may be reported as apart; 1: none.
     double cutoff;
-    CacheLevel into = CacheLevel::first;  ///< See prefetched_cache(); changes no result.
+    Preferences preferences = {};
 };
 
 /// The searched parameter s beyond which times are certainly greater than cutoff t_max, rounding of cutoff (one

@@ -43,10 +43,10 @@ struct Lane<double> {
     using Mask = BoolMask;
     static constexpr unsigned width = 1;
     static constexpr bool is_single = false;
-    /// The lane type that pairs are screened in: of single precision where that makes lanes, two batches of this one at a time. In
-    /// groups of pairs of which most go on, and of which few do.
+    /// The lane type that pairs are screened in: of single precision where that makes lanes, two batches of this one at a time.
     using Screening = double;
-    using SparseScreening = double;
+    /// Whether groups of which few pairs go on may be screened in either precision, by Preferences.
+    static constexpr bool screens_scenes_in_either = false;
     template <unsigned part>
     static FASTCCD_INLINE double widened(double x)
     {

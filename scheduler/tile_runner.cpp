@@ -156,7 +156,7 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
         ++totals.scalar_pairs;
     };
     if (job.kernels != nullptr) {
-        job.kernels->run_tile({job.kind, &job.source, first, count, &parameters, cutoff, prefetched_cache()}, scratch);
+        job.kernels->run_tile({job.kind, &job.source, first, count, &parameters, cutoff, preferences()}, scratch);
         earliest = parameters.time(scratch.earliest);
         if (parameters.t_max != 1.0)
             for_each_bit(scratch.reported, count, [&](std::size_t i) { scratch.time[i] = parameters.time(scratch.time[i]); });

@@ -256,7 +256,7 @@ public:
     FASTCCD_INLINE BlockSource(const TileRequest& tile, TileScratch& scratch)
         : tile_{tile}, scratch_{scratch}, indexed_{tile.source->view == nullptr},
           size_{indexed_ ? list_pairs<Batch>(tile, scratch.listed) : tile.count},
-          prefetcher_{*tile.source, tile.first, tile.into}
+          prefetcher_{*tile.source, tile.first, tile.preferences.into}
     {
         if (indexed_) {
             if (size_ == 0) return;

@@ -4,8 +4,6 @@
 // storing only some lanes, min / max with MINPD's rule on NEON) is written out per architecture.
 #pragma once
 
-#include <type_traits>
-
 #include <xsimd/xsimd.hpp>
 
 #include <lane.hpp>
@@ -52,7 +50,7 @@ struct BatchTraits<xsimd::sse2> {
         _mm_storeu_pd(p, bits == 2 ? _mm_unpackhi_pd(x, x) : x);
     }
     static FASTCCD_INLINE unsigned bits(__m128 m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
-    static constexpr bool screens_scenes_in_single = true;
+    static constexpr bool screens_scenes_in_either = false;
     static FASTCCD_INLINE __m128 min(__m128 a, __m128 b) { return _mm_min_ps(a, b); }
     static FASTCCD_INLINE __m128 max(__m128 a, __m128 b) { return _mm_max_ps(a, b); }
     static FASTCCD_INLINE __m128 narrowed(__m128d low, __m128d high) { return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high)); }
@@ -170,7 +168,7 @@ struct BatchTraits<xsimd::avx2> : WideBoxes {
         __m256d is_high_;
     };
     static FASTCCD_INLINE unsigned bits(__m256 m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
-    static constexpr bool screens_scenes_in_single = true;
+    static constexpr bool screens_scenes_in_either = false;
     static FASTCCD_INLINE __m256 min(__m256 a, __m256 b) { return _mm256_min_ps(a, b); }
     static FASTCCD_INLINE __m256 max(__m256 a, __m256 b) { return _mm256_max_ps(a, b); }
     static FASTCCD_INLINE __m256d widened_low(__m256 x) { return _mm256_cvtps_pd(_mm256_castps256_ps128(x)); }
@@ -281,8 +279,7 @@ struct BatchTraits<xsimd::avx512bw> : WideBoxes {
         __m512i order_;
     };
     static FASTCCD_INLINE unsigned bits(__mmask16 m) { return m; }
-    /// Not where few pairs go on: scenes took a tenth longer on Zen 4, where half of the work is to convert (bench/README.md).
-    static constexpr bool screens_scenes_in_single = false;
+    static constexpr bool screens_scenes_in_either = true;  // which one is faster depends on the processor: preferences()
     static FASTCCD_INLINE __m512 min(__m512 a, __m512 b) { return _mm512_min_ps(a, b); }
     static FASTCCD_INLINE __m512 max(__m512 a, __m512 b) { return _mm512_max_ps(a, b); }
     static FASTCCD_INLINE __m512d widened_low(__m512 x) { return _mm512_maskz_cvtps_pd(0xff, _mm512_castps512_ps256(x)); }
@@ -329,7 +326,7 @@ struct BatchTraits<xsimd::neon64> {
         const uint32x4_t lanes = {1, 2, 4, 8};
         return vaddvq_u32(vandq_u32(m, lanes));
     }
-    static constexpr bool screens_scenes_in_single = true;
+    static constexpr bool screens_scenes_in_either = false;
     static FASTCCD_INLINE float32x4_t min(float32x4_t a, float32x4_t b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
     static FASTCCD_INLINE float32x4_t max(float32x4_t a, float32x4_t b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
     static FASTCCD_INLINE float32x4_t narrowed(float64x2_t low, float64x2_t high) { return vcvt_high_f32_f64(vcvt_f32_f64(low), high); }
@@ -397,7 +394,7 @@ struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
     using Traits = BatchTraits<A>;
 
     using Screening = xsimd::batch<float, A>;
-    using SparseScreening = std::conditional_t<Traits::screens_scenes_in_single, Screening, Batch>;
+    static constexpr bool screens_scenes_in_either = Traits::screens_scenes_in_either;
     /// Both rounded, one behind the other, and back.
     static FASTCCD_INLINE Screening narrowed(Batch low, Batch high) { return Traits::narrowed(low, high); }
     template <unsigned part>

@@ -51,7 +51,7 @@ public:
             if (scratch.dense) {
                 pipeline.screen_dense_group(i, count);
             } else {
-                pipeline.screen_group(i, count);
+                pipeline.screen_sparse_group(i, count, request.preferences);
                 pipeline.compare_screened(false);
             }
         }
@@ -129,12 +129,19 @@ private:
         return blocks + i / block_pairs * block_coordinates + i % block_pairs;
     }
 
+    void screen_sparse_group(std::size_t first, std::size_t count, const Preferences& preferences)
+    {
+        if constexpr (Lane<L>::screens_scenes_in_either)
+            if (preferences.scenes_in_double) return screen_group<L>(first, count);
+        screen_group<typename Lane<L>::Screening>(first, count);
+    }
+
     /// For scenes, where most pairs end here: screens a group without looking at any result, which no branch predictor could
     /// foresee, then lists what is left in [screened]. Processors overlap one batch with the next only as far as a few hundred
     /// instructions reach: there is nothing in the loop that could be done before or after it.
+    template <class S>
     void screen_group(std::size_t first, std::size_t count)
     {
-        using S = typename Lane<L>::SparseScreening;
         const double* const blocks = source.group(first);
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
@@ -147,7 +154,8 @@ private:
         const std::uint64_t in_use = count < group_pairs ? (std::uint64_t{1} << count) - 1 : ~std::uint64_t{0};
         kept &= in_use;
         beyond &= in_use;
-        if (Lane<S>::is_single && beyond != 0) screen_again(blocks, kept, beyond);
+        if constexpr (Lane<S>::is_single)
+            if (beyond != 0) screen_again(blocks, kept, beyond);
         for (; beyond != 0; beyond &= beyond - 1)
             set_bit(scratch.is_undecided, static_cast<unsigned>(source.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
         scratch.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;

@@ -67,7 +67,7 @@ struct Lane<Array<T, n>> {
     static constexpr unsigned width = n;
     static constexpr bool is_single = std::is_same_v<T, float>;
     using Screening = Array<float, 2 * n>;
-    using SparseScreening = Screening;
+    static constexpr bool screens_scenes_in_either = true;
     static Screening narrowed(Values low, Values high)
     {
         return each<Screening>([&](unsigned i) { return static_cast<float>(i < n ? low.value[i] : high.value[i - n]); });
