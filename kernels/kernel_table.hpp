@@ -80,6 +80,7 @@ struct TileScratch {
     /// First time of contact: from the lanes the parameter s, in the end toi; +infinity if there is none. Here and in `roots`, lanes
     /// without a contact write past the last pair.
     alignas(64) double time[tile_pairs + most_lanes];
+    std::size_t cleared;  ///< So many times are known, +infinity but for those of words in `reported` that are not 0. 0 to begin with.
     std::uint8_t roots[tile_pairs + most_lanes];  ///< Contact roots.
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.

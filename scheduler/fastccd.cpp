@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <checked_source.hpp>
 #include <guarded.hpp>
@@ -13,6 +14,18 @@
 namespace fastccd {
 
 namespace {
+
+/// Where nothing is reported, without looking at the scratch, so that those times need not be in a cache.
+void copy_times(const TileScratch& scratch, std::span<double> toi)
+{
+    for (std::size_t i = 0; i < toi.size(); i += 64) {
+        const std::size_t count = std::min<std::size_t>(toi.size() - i, 64);
+        if (scratch.reported[i / 64] == 0)
+            std::fill_n(&toi[i], count, std::numeric_limits<double>::infinity());
+        else
+            std::copy_n(&scratch.time[i], count, &toi[i]);
+    }
+}
 
 Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, std::span<double> toi, Summary* summary,
              std::span<std::uint8_t> roots)
@@ -25,7 +38,7 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
     Workers<TileWorker> workers;
     const Summary totals =
         for_each_tile(job, workers, whole_interval, [&](const TileWorker& worker, std::size_t first, std::size_t count) {
-            std::memcpy(toi.data() + first, worker.scratch.time, count * sizeof(double));
+            copy_times(worker.scratch, toi.subspan(first, count));
             if (!roots.empty()) std::memcpy(roots.data() + first, worker.scratch.roots, count);
         });
     if (summary != nullptr) *summary = totals;

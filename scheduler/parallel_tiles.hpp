@@ -20,7 +20,11 @@ struct TileWorker {
     Summary totals;
 
     /// What else kernels read before they write it, past the end of queues and results, decides nothing.
-    TileWorker() { scratch.dense = false; }
+    TileWorker()
+    {
+        scratch.cleared = 0;
+        scratch.dense = false;
+    }
 };
 static_assert(sizeof(TileWorker) < 512 * 1024);
 

@@ -34,24 +34,43 @@ FASTCCD_INLINE void leave_undecided(TileScratch& scratch, L pair, unsigned lanes
     for_each_pair(pair, lanes, [&](unsigned i, int) FASTCCD_INLINE_LAMBDA { set_bit(scratch.is_undecided, i); });
 }
 
-/// Nothing reported, nothing undecided, all times +infinity.
+/// Nothing reported, nothing undecided, all times +infinity. In scenes most words of 64 pairs report nothing, and their times are not
+/// touched, here and in mark_reported(): all of them would be most of the first-level cache, in which pairs to come are already.
 template <class L>
 FASTCCD_INLINE void clear_results(TileScratch& scratch, std::size_t count)
 {
-    for (std::size_t i = 0; i < count; i += Lane<L>::width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+    const auto clear = [&](std::size_t i, std::size_t end) FASTCCD_INLINE_LAMBDA {
+        for (; i < end; i += Lane<L>::width) Lane<L>::store(&scratch.time[i], broadcast<L>(__builtin_inf()));
+    };
+    for (std::size_t i = 0; i < scratch.cleared; i += 64)
+        if (scratch.reported[i / 64] != 0) clear(i, i + 64);
+    if (scratch.cleared < count) {
+        clear(scratch.cleared, (count + 63) / 64 * 64);
+        scratch.cleared = (count + 63) / 64 * 64;
+    }
     scratch.earliest = __builtin_inf();
-    __builtin_memset(scratch.roots, 0, count);
+    __builtin_memset(scratch.roots, 0, (count + 63) / 64 * 64);
     __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
     __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
 }
 
-/// Fills in `reported` and `earliest` from the times.
+/// 64 bytes.
+FASTCCD_INLINE bool are_zero(const std::uint8_t* bytes)
+{
+    std::uint64_t words[8], any = 0;
+    __builtin_memcpy(words, bytes, sizeof words);
+    for (const std::uint64_t word : words) any |= word;
+    return any == 0;
+}
+
+/// Fills in `reported` and `earliest` from the times, where there are roots.
 template <class L>
 FASTCCD_INLINE void mark_reported(TileScratch& scratch, std::size_t count)
 {
     const L infinity = broadcast<L>(__builtin_inf());
     L smallest = infinity;
     for (std::size_t i = 0; i < count; i += 64) {
+        if (are_zero(&scratch.roots[i])) continue;  // as clear_results() left it
         std::uint64_t word = 0;
         for (unsigned k = 0; k < 64; k += Lane<L>::width) {
             const L time = Lane<L>::load(&scratch.time[i + k]);

@@ -133,6 +133,9 @@ mutant 'one end point on one side of the other edge' $certificates 's/one_sign\(
 
 halves=kernels/halves_certificate.hpp
 mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.second/apart.first | apart.second/' same_bits_test
+mutant 'times of the tile before stay' simd/lane_results.hpp 's/scratch\.reported\[i \/ 64\] != 0\) clear/scratch.reported[i \/ 64] == 1) clear/' same_bits_test api_test
+mutant 'times never looked at are not cleared' simd/lane_results.hpp 's/if \(scratch\.cleared < count\) \{\s*clear\(/if (scratch.cleared < count) {\n        clear(count - count % 64 + 0 * /' same_bits_test api_test
+mutant 'roots of half a word not seen' simd/lane_results.hpp 's/for \(const std::uint64_t word : words\) any \|= word;/for (int k = 0; k < 4; ++k) any |= words[k];/' same_bits_test api_test
 mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source\.is_in_place\(\)\) keep_waiting\(\);//' wide_lane_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
