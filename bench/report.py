@@ -176,6 +176,8 @@ def goal_table(rows):
         ("rate of random edge-edge pairs over vertex-face", min, 0.7, {"": ratio(rate("edge_edge", "random"), rate("vertex_face", "random"))}, percent),
         ("AVX2 over AVX-512, random pairs", min, 0.6, of_kinds(lambda kind: ratio(rate(kind, "random", isa="avx2"), rate(kind, "random"))), percent),
         ("scenes, packed, of the streaming limit", min, 0.85, of_scenes(lambda kind, data: row(kind, data).get("limit_fraction")), percent),
+        ("the same, contacts alone, without one time per pair", min, 0.85,
+         of_scenes(lambda kind, data: row(kind, data, question="contacts").get("limit_fraction")), percent),
         ("cloth-ball, indexed, M pairs/s", min, 110e6, {"vertex-face": rate("vertex_face", "cloth-ball", "indexed")}, millions),
         ("n-body, indexed, M pairs/s", min, 160e6, {"vertex-face": rate("vertex_face", "n-body", "indexed")}, millions),
         *((f"earliest contact over one time per pair, rates, {name}", min, 1.0, of_scenes(earliest_over_dense(layout)), percent)
