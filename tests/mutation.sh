@@ -185,7 +185,7 @@ mutant 'value margin of positions = 0' scalar/meeting.hpp 's/2 \* 4 \* ErrorBoun
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/product \* \(1\.0 - 0x1p-52\)/product/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
 mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
-mutant 'range: gaps along subnormal axes without a floor' kernels/certificates.hpp 's/max\(extent, broadcast<L>\(length_floor\)\)/extent/' extreme_range_test
+mutant 'range: gaps along subnormal axes without a floor' kernels/certificates.hpp 's/max\(extent, broadcast<L>\(extent_floor\(Lane<L>::is_single\)\)\)/extent/' extreme_range_test
 mutant 'range: short steps scaled as if they were whole' scalar/scaling.cpp 's/within_range\(step\) && within_range\(searched\)/within_range(step)/' extreme_range_test
 mutant 'range: both ends halved' scalar/scaling.cpp 's/coordinate > 0x1p1021 \? 4 : 0/4/' extreme_range_test
 mutant 'range: subnormal times rounded up' kernels/search_parameters.hpp 's/product - 0x1p-1073 : 0\.0/product : 0.0/' extreme_range_test
@@ -218,7 +218,7 @@ mutant 'lanes: first leaf decided' $roots 's/leaf\.inner & bracket\.certain/brac
 mutant 'lanes: crossing not asked for quickly' $roots 's/in_leaf & around\.present/around.present/' certificates_test same_bits_test
 mutant 'lanes: crossing not asked for' $roots 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
 mutant 'lanes: crossing by sign alone, quickly' $roots 's/less\(root\.threshold, min\(abs\(at_left\), abs\(at_right\)\)\) & //' certificates_test same_bits_test wide_lane_test stress
-mutant 'lanes: crossing by sign alone' $roots 's/broadcast<L>\(parameters\.bounds\.cubic_on_interval_lanes\(\)\) \* root\.scale\.volume/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
+mutant 'lanes: crossing by sign alone' $roots 's/cubic_bound_lanes\(root\.r, root\.scale\.volume, parameters\.bounds\)/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, low\) \| less\(high, negated\(bound\)\)/less(broadcast<L>(0.0), low) | less(high, broadcast<L>(0.0))/' certificates_test same_bits_test
 mutant 'lanes: across one line of two' kernels/projected_inclusion.hpp 's/(one_sign\(bound, pk, negated\(tk\)\)) &/$1 |/' certificates_test same_bits_test
 mutant 'lanes: aside taken for across' kernels/projected_inclusion.hpp 's/one_sign\(bound, pk, negated\(tk\)\)/one_sign(bound, pk, tk)/' certificates_test same_bits_test
@@ -227,7 +227,7 @@ mutant 'lanes: later roots not sought' $roots 's/parameters\.count_roots \? 0 : 
 mutant 'lanes: second root sought in the first piece' $roots 's/select<L>\(decided, second_low, root\.low\)/root.low/' same_bits_test certificates_test
 mutant 'lanes: second root beside an undecided first lost' $roots 's/both = undecided & second;/both = 0;/' same_bits_test certificates_test wide_lane_test stress
 mutant 'lanes: third root sought in the second piece' $roots 's/later_high\[i\]\);(\s+root\.high = Lane<L>::load\(&scratch\.search\.end)/later_low[i]);$1/' same_bits_test certificates_test
-mutant 'lanes: early cutoff too early' $pipeline 's/cutoff \+ 2 \* parameters\.leaf_width < 1\.0 \? cutoff \+ 2 \* parameters\.leaf_width : 1\.0/0.5 * cutoff/' indexed_test same_bits_test
+mutant 'lanes: early cutoff too early' $pipeline 's/\(cutoff \+ 2 \* parameters\.leaf_width\) \* \(1\.0 \+ 0x1p-22\)/0.5 * cutoff/' indexed_test same_bits_test
 
 # ---- Minimum separation
 separation=kernels/separation_bound.hpp
