@@ -92,6 +92,16 @@ TEST(CommandErrors, HitsReplaceAFileOnlyWhenComplete)
     EXPECT_TRUE(std::filesystem::is_symlink(directory / "link.csv"));
     EXPECT_EQ(std::filesystem::status(hits).permissions(), std::filesystem::perms{0640});
     EXPECT_EQ(directory.names().size(), 3U);
+
+    // Of a link that leads nowhere yet, what it leads to is created.
+    std::filesystem::create_symlink("new.csv", directory / "ahead.csv");
+    EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "100", "--hits", directory / "ahead.csv"}).status, 0);
+    EXPECT_EQ(read_text(directory / "new.csv"), read_text(hits));
+    EXPECT_TRUE(std::filesystem::is_symlink(directory / "ahead.csv"));
+
+    const std::string longest = directory / std::string(255, 'x');
+    EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "100", "--hits", longest}).status, 0);
+    EXPECT_EQ(read_text(longest), read_text(hits));
 }
 
 // ---- Command line -----------------------------------------------------------------------------------------
@@ -121,6 +131,8 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random", "--kind", "vf", "--threads", "0"}, "--threads: '0' is not a whole number from 1"},
         {{"random", "--kind", "vf", "--isa", "mmx"}, "--isa: there is no instruction set 'mmx'; available here: scalar"},
         {{"random", "--kind", "vf", "--nothing"}, "--nothing"},
+        {{"random", "--kind", "vf", "--min-separation", "1e-400"}, "--min-separation: '1e-400' is too small"},
+        {{"run", "--kind", "vf", "--hits=", none}, "--hits=: the value is empty"},
         {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
         {{"run", "--kind", "vf"}, "FILE is required"},
         {{"run", none}, "--kind is required"},
@@ -204,12 +216,41 @@ TEST(CommandErrors, OutputThatGoesNowhere)
     const Outcome no_reader = run(random, {}, {.no_reader = true});
     EXPECT_EQ(no_reader.status, 128 + SIGPIPE);
     EXPECT_EQ(no_reader.error, "");
-    const Outcome closed = run(random, {}, {.closed = true});
-    EXPECT_EQ(closed.status, 0);
-    EXPECT_EQ(closed.error, "");
+    for (const Arguments& arguments : {random, {"random", "--kind", "vf", "--quiet", "--hits", "-"}, {"isa"}, {"--help"}}) {
+        const Outcome closed = run(arguments, {}, {.closed = true});
+        EXPECT_EQ(closed.status, 1);
+        EXPECT_EQ(closed.error, "fastccd: standard output: cannot be written: Bad file descriptor\n");
+    }
+    EXPECT_EQ(run({"random", "--kind", "vf", "--quiet"}, {}, {.closed = true}).status, 0) << "there was nothing to write";
     const Outcome full = run(random, {}, {.path = "/dev/full"});
     EXPECT_EQ(full.status, 1);
     EXPECT_EQ(full.error, "fastccd: standard output: cannot be written: No space left on device\n");
+}
+
+/// Whoever shares a pipe with the command may have made it one that does not wait.
+TEST(CommandErrors, OutputThatDoesNotWait)
+{
+    int ends[2];
+    ASSERT_EQ(::pipe2(ends, O_NONBLOCK), 0);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        ::dup2(ends[1], STDOUT_FILENO);
+        ::close(ends[0]);
+        become_command({"random", "--kind", "ee", "--pairs", "100000", "--quiet", "--hits", "-"});
+    }
+    ::close(ends[1]);
+    ::usleep(200'000);  // the pipe is full by then
+    ::fcntl(ends[0], F_SETFL, 0);
+    std::string out;
+    char buffer[4096];
+    for (ssize_t n = 0; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) out.append(buffer, static_cast<std::size_t>(n));
+    ::close(ends[0]);
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_EQ(exit_status(status), 0);
+    EXPECT_EQ(out, run({"random", "--kind", "ee", "--pairs", "100000", "--quiet", "--hits", "-"}).out);
+    EXPECT_GT(out.size(), 100'000U) << "more than a pipe holds";
 }
 
 /// Runs on a terminal of its own and sends `signal` once the progress bar is there.
@@ -282,18 +323,6 @@ TEST(CommandErrors, TheSameSignalTwiceAtOnceEndsItCleanly)
     }
 }
 
-/// Runs under a limit that only the command has.
-Outcome run_limited(int resource, rlim_t limit, const Arguments& arguments)
-{
-    rlimit before{};
-    ::getrlimit(static_cast<__rlimit_resource>(resource), &before);
-    const rlimit less{.rlim_cur = limit, .rlim_max = before.rlim_max};
-    ::setrlimit(static_cast<__rlimit_resource>(resource), &less);
-    const Outcome outcome = run(arguments);
-    ::setrlimit(static_cast<__rlimit_resource>(resource), &before);
-    return outcome;
-}
-
 TEST(CommandErrors, FilesTooLargeLeaveNothing)
 {
     const ScratchDirectory directory;
@@ -329,7 +358,10 @@ TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
     };
     refused({"--hits", file, "--save", file}, "written already");
     refused({"--hits", directory / "./file", "--save", file}, "written already");
+    refused({"--hits", file, "--save", std::filesystem::relative(file)}, "written already");
     refused({"--hits", ""}, "--hits: the value is empty");
+    refused({"--hits=", file}, "--hits=: the value is empty");
+    refused({"--save=", file}, "--save=: the value is empty");
     refused({"--save", ""}, "--save: the value is empty");
     EXPECT_TRUE(directory.names().empty());
     EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "16", "--quiet", "--hits", "/dev/null", "--save", "/dev/null"}).status, 0);

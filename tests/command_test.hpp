@@ -131,6 +131,18 @@ inline Outcome run(const Arguments& arguments, const std::vector<std::string>& e
             .peak_kilobytes = usage.ru_maxrss};
 }
 
+/// Runs under a limit that only the command has.
+inline Outcome run_limited(int resource, rlim_t limit, const Arguments& arguments)
+{
+    rlimit before{};
+    ::getrlimit(static_cast<__rlimit_resource>(resource), &before);
+    const rlimit less{.rlim_cur = limit, .rlim_max = before.rlim_max};
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &less);
+    const Outcome outcome = run(arguments);
+    ::setrlimit(static_cast<__rlimit_resource>(resource), &before);
+    return outcome;
+}
+
 /// The report of a run that has to succeed.
 inline nlohmann::json run_json(Arguments arguments)
 {

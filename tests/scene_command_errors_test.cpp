@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include <sys/stat.h>
+
 namespace fastccd::testing {
 namespace {
 
@@ -75,6 +77,9 @@ TEST(SceneCommandErrors, OutputThatCannotBeWrittenIsAnError)
     const ScratchDirectory directory;
     const std::string a = directory.write("a.obj", two_faces("1", "5"));
     const std::string b = directory.write("b.obj", two_faces("-1", "3"));
+    const ScratchDirectory pipes;
+    ASSERT_EQ(::mkfifo((pipes / "step_000_vf.npy").c_str(), 0600), 0);
+    const int reader = ::open((pipes / "step_000_vf.npy").c_str(), O_RDWR);  // so that nobody waits
     const struct {
         Arguments more;
         int status;
@@ -86,6 +91,7 @@ TEST(SceneCommandErrors, OutputThatCannotBeWrittenIsAnError)
         {{"--save-pairs", a}, 1, "a.obj: is no folder"},
         {{"--save-pairs", a + "/p", "--hits", directory / "hits.csv"}, 1, "a.obj/p: cannot be created: Not a directory"},
         {{"--save-pairs", "-"}, 2, "--save-pairs"},
+        {{"--save-pairs", pipes / ""}, 1, "step_000_vf.npy: is no regular file"},
     };
     for (const auto& [more, status, message] : table) {
         const Outcome outcome = run(scene({a, b}, more));
@@ -95,6 +101,7 @@ TEST(SceneCommandErrors, OutputThatCannotBeWrittenIsAnError)
         EXPECT_NE(outcome.error.find(message), std::string::npos) << outcome.error;
         EXPECT_EQ(directory.names().size(), 2U) << message;
     }
+    ::close(reader);
 }
 
 TEST(SceneCommandErrors, UsageErrorsAreOneLineAndStatusTwo)
@@ -199,6 +206,52 @@ TEST(SceneCommandErrors, SignalsLeaveNothing)
                   128 + signal);
         EXPECT_FALSE(fs::exists(cloth));
     }
+}
+
+/// The same command may be given twice; the second time it has nothing to take away.
+TEST(MakeSceneCommand, LeavesFramesOfBeforeWhenASignalEndsIt)
+{
+    const ScratchDirectory directory;
+    const std::string cloth = directory / "cloth";
+    const Arguments make{"make-scene", "cloth-ball", "--size", "60", "--frames", "200", "--quiet", cloth};
+    ASSERT_EQ(run(make).status, 0);
+    const std::vector<std::string> before = files_in(cloth);
+    ASSERT_EQ(before.size(), 200U);
+    EXPECT_EQ(status_after_signal(make, SIGINT, cloth, before.size() + 1), 128 + SIGINT);
+    EXPECT_EQ(files_in(cloth), before);
+}
+
+TEST(MakeSceneCommand, LeavesNoFolderWhereItCannotWrite)
+{
+    const ScratchDirectory directory;
+    const std::string deep = directory / "new/folder";
+    const Outcome refused = run_limited(RLIMIT_FSIZE, 1000, {"make-scene", "cloth-ball", "--frames", "2", deep});
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_NE(refused.error.find("File too large"), std::string::npos) << refused.error;
+    EXPECT_TRUE(directory.names().empty());
+}
+
+/// A pipe that nobody opens at its other end waits, and ends with the signal, not with an error.
+TEST(SceneCommandErrors, SignalsEndItWhileAPipeWaits)
+{
+    const ScratchDirectory directory;
+    const std::string pipe = directory / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const std::string frame = directory.write("a.obj", two_faces("1", "5"));
+    const auto status_while_waiting = [&](const Arguments& arguments) {
+        const pid_t child = ::fork();
+        if (child == 0) become_command(arguments);
+        std::this_thread::sleep_for(std::chrono::milliseconds{300});
+        ::kill(child, SIGTERM);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return exit_status(status);
+    };
+    EXPECT_EQ(status_while_waiting(scene({pipe, frame})), 128 + SIGTERM) << "to be opened for reading";
+    EXPECT_EQ(status_while_waiting(scene({frame, frame}, {"--hits", pipe})), 128 + SIGTERM) << "to be opened for writing";
+    const int both_ends = ::open(pipe.c_str(), O_RDWR);
+    EXPECT_EQ(status_while_waiting(scene({pipe, frame})), 128 + SIGTERM) << "to be read";
+    ::close(both_ends);
 }
 
 }  // namespace

@@ -108,10 +108,20 @@ void add_search_options(CLI::App& command, CommonOptions& options)
 void add_separation_options(CLI::App& command, CommonOptions& options)
 {
     const auto at_least_zero = number_check("a finite number, at least 0", [](double x) { return x >= 0 && std::isfinite(x); });
+    const CLI::Validator not_too_small{
+        [](const std::string& text) {
+            double value = 0;
+            const std::string digits = text.substr(0, text.find_first_of("eEpP"));
+            const bool zero = CLI::detail::lexical_cast(text, value) && value == 0;
+            return zero && digits.find_first_of("123456789") != std::string::npos ? fmt::format("'{}' is too small for a double, and would count as 0", text)
+                                                                                    : std::string{};
+        },
+        std::string{}};
     command
         .add_option("--min-separation", options.narrow_phase.minimum_separation,
                     "Contact is a distance of at most D, in units of the coordinates;\npairs as close at the start get toi 0")
         ->check(at_least_zero)
+        ->check(not_too_small)
         ->type_name("D")
         ->excludes("--exact");
     command
@@ -174,9 +184,12 @@ void refuse_overwriting_output(const CommonOptions& options, const std::filesyst
 {
     if (options.hits.empty() || OutputFile::is_standard_output(options.hits)) return;
     std::error_code unknown;
-    const auto same = [&](const std::filesystem::path& path) { return std::filesystem::weakly_canonical(path, unknown); };
+    // Absolute first: of a path that is not there yet, what it is relative to is left out otherwise.
+    const auto place = [&](const std::filesystem::path& path) {
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unknown), unknown);
+    };
     // What is no ordinary file, such as /dev/null, takes both.
-    if (same(options.hits) != same(output) || std::filesystem::is_other(options.hits, unknown)) return;
+    if (place(options.hits) != place(output) || std::filesystem::is_other(options.hits, unknown)) return;
     throw CLI::ValidationError("--hits", fmt::format("{} is written already, by another option", options.hits));
 }
 

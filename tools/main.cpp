@@ -3,6 +3,7 @@
 // Exit status: 0 fine (invalid pairs included: they are answered), 1 a file or stream cannot be used,
 // 2 the command line is wrong, 128 + n ended by signal n (130 for Ctrl-C, 141 when the reader of the
 // output went away).
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -12,10 +13,13 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "commands.hpp"
 #include "interrupt.hpp"
@@ -26,11 +30,21 @@ constexpr int exit_failure = 1;
 constexpr int exit_usage = 2;
 
 /// Files opened later must not get the number of a standard stream that the caller closed: a report
-/// would be written into them.
+/// would be written into them. To read from such an input and to write to such an output fails, as on a
+/// closed one; what there is to say of that goes nowhere.
 void open_closed_standard_streams()
 {
-    for (int descriptor = 0; descriptor < 3; ++descriptor) {
-        if (::fcntl(descriptor, F_GETFD) == -1 && errno == EBADF) (void)::open("/dev/null", O_RDWR);
+    for (const auto& [descriptor, mode] : {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_RDWR}}) {
+        if (::fcntl(descriptor, F_GETFD) == -1 && errno == EBADF) (void)::open("/dev/null", mode);
+    }
+}
+
+/// CLI11 would take the next argument for the value of `--hits=`: a file to read would be written instead.
+void refuse_empty_values(const std::vector<std::string_view>& arguments)
+{
+    for (const std::string_view argument : arguments) {
+        if (argument == "--") return;
+        if (argument.starts_with("--") && argument.ends_with('=')) throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument));
     }
 }
 
@@ -93,6 +107,7 @@ int main(int argc, char** argv)
     add_isa_command(app);
 
     try {
+        refuse_empty_values({argv + std::min(argc, 1), argv + argc});
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& error) {

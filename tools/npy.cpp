@@ -280,6 +280,7 @@ NpyWriter::NpyWriter(const std::filesystem::path& path, PairView::Layout layout,
     if (layout == PairView::Layout::blocked && pairs.value_or(1) % block_pairs != 0) {
         throw std::logic_error("blocks of a .npy file hold 8 pairs each");
     }
+    if (!pairs && file_.is_in_place()) throw InputError(path, "is no regular file, into which the number of pairs can be put in the end");
     file_.write(npy_header(layout, pairs.value_or(0)));
 }
 

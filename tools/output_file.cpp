@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -43,9 +44,36 @@ std::optional<int> open_descriptor(const std::filesystem::path& path)
 
 int open_in_place(const std::filesystem::path& path)
 {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    int descriptor = -1;
+    // A pipe waits until somebody reads from it, and a signal wakes it up.
+    while ((descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC)) < 0 && errno == EINTR) check_interrupt();
     if (descriptor < 0) fail(path, "cannot be opened for writing", errno);
     return descriptor;
+}
+
+/// Others who have the same pipe open may have made it one that does not wait.
+void wait_until_writable(int descriptor)
+{
+    pollfd waiting{.fd = descriptor, .events = POLLOUT, .revents = 0};
+    if (::poll(&waiting, 1, -1) < 0) check_interrupt();
+}
+
+/// What a link leads to, be it there or not: where the link stands, its file is replaced or created, and it stays a link.
+std::filesystem::path follow_links(std::filesystem::path path)
+{
+    constexpr int most_links = 40;  // as many as Linux follows
+    std::error_code none;
+    for (int i = 0; i < most_links && std::filesystem::is_symlink(path, none); ++i)
+        path = path.parent_path() / std::filesystem::read_symlink(path, none);
+    return path;
+}
+
+/// A name in the same folder for what `target` gets. Long names are cut, so that there is room for the rest.
+std::filesystem::path temporary_name(const std::filesystem::path& target, unsigned attempt)
+{
+    constexpr std::size_t most_kept = 200;  // of 255 bytes
+    const std::string name = target.filename().string().substr(0, most_kept);
+    return target.parent_path() / fmt::format("{}.{}-{}.tmp", name, ::getpid(), attempt);
 }
 
 }  // namespace
@@ -58,6 +86,8 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
             bytes.remove_prefix(static_cast<std::size_t>(written));
         } else if (errno == EINTR) {
             check_interrupt();
+        } else if (errno == EAGAIN) {
+            wait_until_writable(descriptor);
         } else if (errno == EPIPE) {
             throw BrokenPipe{};
         } else {
@@ -90,17 +120,13 @@ OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
     if (exists) {
         // Renaming needs no permission on the file itself, but a write-protected file is meant to stay.
         if (::access(target_.c_str(), W_OK) != 0) fail(target_, "cannot be overwritten", errno);
-        // A link stays a link; its file is replaced.
-        std::error_code ignored;
-        const std::filesystem::path resolved = std::filesystem::canonical(target_, ignored);
-        if (!ignored) target_ = resolved;
     }
+    target_ = follow_links(target_);
 
     // Process id and counter make the name unique among running writers, O_EXCL skips what a killed
     // process left behind; 0666 lets the umask decide, as for any new file.
     for (unsigned attempt = 0; descriptor_ < 0; ++attempt) {
-        temporary_ = target_;
-        temporary_ += fmt::format(".{}-{}.tmp", ::getpid(), attempt);
+        temporary_ = temporary_name(target_, attempt);
         descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor_ < 0 && errno != EEXIST) {
             const int error = errno;

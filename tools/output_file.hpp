@@ -32,6 +32,9 @@ public:
     /// Appends, unbuffered: pass large pieces. Throws as write_all.
     void write(std::string_view bytes) const { write_all(descriptor_, bytes, target_); }
 
+    /// Whether bytes go to a pipe, a device or a descriptor, where what is written stays.
+    [[nodiscard]] bool is_in_place() const { return temporary_.empty(); }
+
     /// Replaces bytes written before, of a file that is not written in place. Throws InputError.
     void rewrite(std::size_t offset, std::string_view bytes) const;
 

@@ -14,6 +14,7 @@
 
 #include "../input_error.hpp"
 #include "../mapped_file.hpp"
+#include "../new_folder.hpp"
 #include "../output_file.hpp"
 #include "../threads.hpp"
 #include "machine.hpp"
@@ -26,26 +27,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder for the files; removed again if it was made here and nothing came into it.
+/// The folder for the files.
 class OutputFolder {
 public:
-    explicit OutputFolder(const fs::path& path) : path_{path}
+    explicit OutputFolder(const fs::path& path) : path_{path}, folder_{path}
     {
-        std::error_code error;
-        made_ = fs::create_directories(path_, error);
-        if (error) throw InputError(path_, "cannot be created: " + error.message());
-        if (!fs::is_directory(path_)) throw InputError(path_, "is no folder");
         // Hours of measuring shall not end at it.
         if (::access(path_.c_str(), W_OK | X_OK) != 0)
             throw InputError(path_, "cannot be written into: " + std::generic_category().message(errno));
     }
-    ~OutputFolder()
-    {
-        std::error_code not_empty;
-        if (made_) fs::remove(path_, not_empty);
-    }
-    OutputFolder(const OutputFolder&) = delete;
-    OutputFolder& operator=(const OutputFolder&) = delete;
 
     /// Files by name, all under their names or none unless the disk fails in between; the last one comes last.
     void write(const std::vector<std::pair<std::string, std::string>>& contents) const
@@ -60,7 +50,7 @@ public:
 
 private:
     fs::path path_;
-    bool made_ = false;
+    NewFolder folder_;
 };
 
 Json measure(const ReportOptions& options)

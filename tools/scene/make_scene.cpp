@@ -7,11 +7,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <deque>
 #include <initializer_list>
 #include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include "../new_folder.hpp"
+#include "../output_file.hpp"
 
 namespace fastccd::tools {
 namespace {
@@ -273,29 +277,18 @@ void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir,
                      const std::function<void()>& on_frame)
 {
     const ClothBall scene(size, frames);
-    std::error_code error;
-    const bool is_new = std::filesystem::create_directories(out_dir, error);
-    if (error)
-        throw InputError(out_dir,
-                         fmt::format("the directory cannot be created: {}", error.message()));
+    const NewFolder folder(out_dir);
     refuse_frames_left_over(frames, out_dir);
 
     Mesh mesh{{}, scene.faces()};
-    int written = 0;
-    try {
-        while (written < frames) {
-            mesh.positions = scene.positions(written);
-            write_ply(out_dir / frame_name(written, frames), mesh);
-            ++written;
-            if (on_frame) on_frame();
-        }
-    } catch (...) {
-        // The beginning of a scene looks like a whole one.
-        while (written-- > 0)
-            std::filesystem::remove(out_dir / frame_name(written, frames), error);
-        if (is_new) std::filesystem::remove(out_dir, error);
-        throw;
+    std::deque<OutputFile> files;  // after the folder: gone before it is found empty
+    for (int frame = 0; frame < frames; ++frame) {
+        mesh.positions = scene.positions(frame);
+        write_ply(files.emplace_back(out_dir / frame_name(frame, frames)), mesh);
+        files.back().close();
+        if (on_frame) on_frame();
     }
+    for (OutputFile& file : files) file.commit();
 }
 
 }  // namespace fastccd::tools

@@ -52,8 +52,8 @@ private:
 /// steps of a few widths of a triangle, as a simulation would take them.
 ///
 /// Throws std::invalid_argument as ClothBall does, InputError when a file cannot be written or
-/// the directory holds frames that this scene does not replace, and what `on_frame` throws. All frames
-/// are there in the end, or none.
+/// the directory holds frames that this scene does not replace, and what `on_frame` throws. Frames appear
+/// when all are written: in the end all are there, or what was there before.
 void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir,
                      const std::function<void()>& on_frame = {});
 

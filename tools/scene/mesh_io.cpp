@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-#include "../output_file.hpp"
+#include "../interrupt.hpp"
 #include "mesh_formats.hpp"
 
 namespace fastccd::tools {
@@ -26,21 +26,26 @@ std::string read_bytes(const std::filesystem::path& path)
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
     const auto reason = [](int error) { return std::generic_category().message(error); };
-    const std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+    // A pipe waits, to be opened and to be read, and a signal wakes it up.
+    std::unique_ptr<std::FILE, Close> file(std::fopen(path.c_str(), "rb"));
+    while (!file && errno == EINTR) {
+        check_interrupt();
+        file.reset(std::fopen(path.c_str(), "rb"));
+    }
     if (!file) throw InputError(path, fmt::format("cannot be opened: {}", reason(errno)));
 
     constexpr std::size_t first_size = std::size_t{1} << 20;
     std::string bytes;
     std::size_t size = 0;
-    std::size_t got = 0;
     do {
         if (size == bytes.size()) bytes.resize(std::max(2 * size, first_size));
-        got = std::fread(bytes.data() + size, 1, bytes.size() - size, file.get());
-        if (std::ferror(file.get()) != 0) {
-            throw InputError(path, fmt::format("cannot be read: {}", reason(errno)));
-        }
+        const std::size_t got = std::fread(bytes.data() + size, 1, bytes.size() - size, file.get());
         size += got;
-    } while (got != 0);
+        if (std::ferror(file.get()) == 0) continue;
+        if (errno != EINTR) throw InputError(path, fmt::format("cannot be read: {}", reason(errno)));
+        check_interrupt();
+        std::clearerr(file.get());
+    } while (std::feof(file.get()) == 0);
     bytes.resize(size);
     return bytes;
 }
@@ -104,7 +109,7 @@ Mesh read_mesh(const std::filesystem::path& path)
     return parse_mesh(read_bytes(path), path);
 }
 
-void write_ply(const std::filesystem::path& path, const Mesh& mesh)
+void write_ply(const OutputFile& file, const Mesh& mesh)
 {
     std::string bytes = fmt::format(
         "ply\nformat binary_little_endian 1.0\n"
@@ -118,10 +123,7 @@ void write_ply(const std::filesystem::path& path, const Mesh& mesh)
         if (corner % 3 == 0) bytes += '\3';
         append_little_endian(bytes, static_cast<std::uint32_t>(mesh.faces[corner]), 4);
     }
-
-    OutputFile file(path);
     file.write(bytes);
-    file.commit();
 }
 
 std::vector<std::array<std::int32_t, 2>> unique_edges(const std::vector<std::int32_t>& faces)

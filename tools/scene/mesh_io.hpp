@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../input_error.hpp"
+#include "../output_file.hpp"
 
 // Why an own reader: what Debian 12 packages was weighed first.
 //   CGAL 5.5 (polygon soup)  Keeps doubles and both endiannesses, but answers true or false with no
@@ -43,9 +44,8 @@ struct Mesh {
 /// `read_mesh` on a file's content; `path` gives the extension and the name for messages.
 [[nodiscard]] Mesh parse_mesh(std::string_view content, const std::filesystem::path& path);
 
-/// Writes PLY, binary little endian: double x y z, faces as lists of int. The file appears complete
-/// or not at all. Throws InputError when it cannot be written.
-void write_ply(const std::filesystem::path& path, const Mesh& mesh);
+/// Writes PLY, binary little endian: double x y z, faces as lists of int. Throws as OutputFile::write.
+void write_ply(const OutputFile& file, const Mesh& mesh);
 
 /// The edges of a triangle list (m x 3, indices not negative): each as (low, high), once, sorted
 /// lexicographically. A face that repeats a vertex adds no edge from that vertex to itself.

@@ -17,13 +17,12 @@ bool SavedPairs::is_name_of_pairs(const std::string& name)
     return name.starts_with("step_") && (name.ends_with("_vf.npy") || name.ends_with("_ee.npy"));
 }
 
-SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{folder}, steps_{steps}
+SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{folder}, steps_{steps}, new_folder_{folder}
 {
     std::set<std::string> own;
     for (std::size_t step = 0; step < steps; ++step) {
         for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge}) own.insert(file_name(step, kind));
     }
-    create_folder();
     std::error_code error;
     for (fs::directory_iterator entry{folder_, error}, end; !error && entry != end; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
@@ -32,34 +31,6 @@ SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{fold
                                         "name an empty folder");
     }
     if (error) throw InputError(folder_, fmt::format("cannot be read: {}", error.message()));
-}
-
-SavedPairs::~SavedPairs()
-{
-    if (committed_) return;
-    files_.clear();  // and with them their temporary files, so that the folders are empty
-    std::error_code somebody_else_uses_it;
-    for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder) {
-        fs::remove(*folder, somebody_else_uses_it);
-    }
-}
-
-void SavedPairs::create_folder()
-{
-    std::error_code error;
-    std::vector<fs::path> missing;
-    for (fs::path path = folder_; !path.empty() && !fs::exists(path, error); path = path.parent_path()) {
-        if (path.has_filename()) missing.push_back(path);
-    }
-    std::reverse(missing.begin(), missing.end());
-    for (const fs::path& path : missing) {
-        if (fs::create_directory(path, error)) created_.push_back(path);
-        if (!error) continue;
-        const std::string reason = error.message();
-        for (auto made = created_.rbegin(); made != created_.rend(); ++made) fs::remove(*made, error);
-        throw InputError(folder_, fmt::format("cannot be created: {}", reason));
-    }
-    if (!fs::is_directory(folder_, error)) throw InputError(folder_, "is no folder, which the pairs need");
 }
 
 std::string SavedPairs::file_name(std::size_t step_number, PairKind kind) const
@@ -106,7 +77,6 @@ void SavedPairs::close()
 void SavedPairs::commit()
 {
     for (NpyWriter& file : files_) file.commit();
-    committed_ = true;
 }
 
 }  // namespace fastccd::tools

@@ -10,6 +10,7 @@
 
 #include <fastccd/options.hpp>
 
+#include "../new_folder.hpp"
 #include "../npy.hpp"
 #include "broad_phase.hpp"
 
@@ -23,13 +24,9 @@ public:
     /// Creates the folder if need be. Throws InputError when that fails, or when the folder holds pairs of
     /// steps that this scene does not have: both would be taken for one scene.
     SavedPairs(const std::filesystem::path& folder, std::size_t steps);
-    ~SavedPairs();
 
     /// Whether a file of this name may be one of pairs, of this scene or another.
     [[nodiscard]] static bool is_name_of_pairs(const std::string& name);
-
-    SavedPairs(const SavedPairs&) = delete;
-    SavedPairs& operator=(const SavedPairs&) = delete;
 
     /// Closes the file before, begins the next: steps in order, vertex-face before edge-edge. Throws as NpyWriter.
     void begin(std::size_t step_number, PairKind kind);
@@ -48,14 +45,12 @@ private:
     template <class Pair>
     void append_pairs(const Step& step, std::span<const Pair> pairs);
     [[nodiscard]] std::string file_name(std::size_t step_number, PairKind kind) const;
-    void create_folder();
 
     std::filesystem::path folder_;
     std::size_t steps_;
-    std::vector<std::filesystem::path> created_;  // folders, outermost first
-    std::deque<NpyWriter> files_;                 // closed but for the last
+    NewFolder new_folder_;         // outlives the temporary files in it
+    std::deque<NpyWriter> files_;  // closed but for the last
     std::vector<double> records_;
-    bool committed_ = false;
 };
 
 }  // namespace fastccd::tools
