@@ -12,7 +12,12 @@
 // below 2^14, so u^2 terms are below 2^-39 of it, and 3 products round by 3u < 2^-51.
 #pragma once
 
+#include <cfloat>
+
 #include <lane.hpp>
+
+// Each operation is rounded to its own type: as with SSE2 and NEON, and not in registers of x87.
+static_assert(FLT_EVAL_METHOD == 0, "compile with -msse2 -mfpmath=sse");
 
 namespace fastccd {
 

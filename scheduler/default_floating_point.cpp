@@ -20,10 +20,7 @@ DefaultFloatingPoint::DefaultFloatingPoint() noexcept : before_{_mm_getcsr()}
     if ((before_ & ~exceptions) != at_reset) _mm_setcsr(at_reset);
 }
 
-DefaultFloatingPoint::~DefaultFloatingPoint()
-{
-    if ((before_ & ~exceptions) != at_reset) _mm_setcsr(before_);
-}
+DefaultFloatingPoint::~DefaultFloatingPoint() { _mm_setcsr(before_); }
 
 #else
 

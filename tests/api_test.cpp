@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "generators.hpp"
 #include "narrow_phase.hpp"
@@ -191,6 +192,18 @@ TEST(Api, NeverZeroWhenApartAtTheStart)
     }
     const oracle::Pair touching{{{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 1}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}};
     EXPECT_EQ(answer(oracle::Kind::vertex_face, interleaved({touching}), {}).toi[0], 0.0);
+}
+
+TEST(Api, ABufferMovedFromIsEmpty)
+{
+    PairBuffer from{3};
+    PairBuffer to{std::move(from)};
+    EXPECT_EQ(to.size(), 3u);
+    EXPECT_EQ(from.size(), 0u);
+    from = std::move(to);
+    EXPECT_EQ(from.size(), 3u);
+    std::vector<double> toi;
+    EXPECT_TRUE(time_of_impact(PairKind::vertex_face, to.view(), {}, toi).ok());
 }
 
 TEST(Api, LanesPastTheEndOfABlockedViewAreIgnored)

@@ -235,6 +235,24 @@ void expect_same_bits_in_any(std::size_t pairs_per_family)
 
 TEST(FloatingPointEnvironment, SameBitsInAnyAndItStays) { expect_same_bits_in_any(per_family); }
 
+/// Callers may look at what their own arithmetic raised: lanes divide by zero for nothing, and that is nobody's business.
+TEST(FloatingPointEnvironment, ExceptionsRaisedAreTheCallersOwn)
+{
+    for (const auto kind : kinds) {
+        const Scene scene{kind, per_family};
+        std::vector<double> toi(scene.pairs.size());
+        for (const int raised : {0, FE_INEXACT, FE_DIVBYZERO | FE_OVERFLOW}) {
+            std::feclearexcept(FE_ALL_EXCEPT);
+            std::feraiseexcept(raised);
+            const int before = std::fetestexcept(FE_ALL_EXCEPT);  // an overflow is inexact, too
+            const Status status = time_of_impact(pair_kind(kind), interleaved(scene.pairs), {}, toi);
+            EXPECT_EQ(std::fetestexcept(FE_ALL_EXCEPT), before) << kind_name(kind) << ' ' << raised;
+            EXPECT_TRUE(status.ok());
+        }
+    }
+    std::feclearexcept(FE_ALL_EXCEPT);
+}
+
 /// For machines that are emulated.
 TEST(FloatingPointEnvironment, SameBitsInAnyOfFewPairs) { expect_same_bits_in_any(2); }
 

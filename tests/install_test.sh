@@ -29,6 +29,24 @@ linked=$(ldd "$work/find_package/two_meshes") linked_static=$(ldd "$work/find_pa
 [[ $linked == *libfastccd.so*"$prefix"* ]] || fail "find_package did not link the installed shared library: $linked"
 [[ $linked_static != *libfastccd* ]] || fail "find_package with COMPONENTS static linked the shared library"
 
+# Both at once, each by its own name; the first is fastccd::fastccd.
+mkdir "$work/both"
+cat >"$work/both/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.22)
+project(both LANGUAGES CXX)
+find_package(fastccd 0.1 REQUIRED COMPONENTS static shared)
+foreach(linkage IN ITEMS static shared)
+  if(NOT TARGET fastccd::${linkage})
+    message(FATAL_ERROR "there is no fastccd::${linkage}")
+  endif()
+endforeach()
+get_target_property(aliased fastccd::fastccd ALIASED_TARGET)
+if(NOT aliased STREQUAL fastccd::static)
+  message(FATAL_ERROR "fastccd::fastccd is ${aliased}")
+endif()
+END
+quietly env CXX="$cxx" cmake -S "$work/both" -B "$work/both/build" -DCMAKE_PREFIX_PATH="$prefix"
+
 # Another version, or a component that is not there, is refused.
 mkdir "$work/refused"
 for wanted in "9.0" "0.0.1" "0.1 COMPONENTS no_such_component"; do

@@ -12,7 +12,7 @@
 // any unit. Spans and views must stay valid and unchanged during the call, and outputs apart from inputs; none or null for no
 // pairs is no error. On an error outputs are as they were before, except where a function says otherwise, and `toi` and `roots`
 // on Error::out_of_memory. The caller's floating-point environment (direction of rounding, subnormal numbers flushed, exceptions
-// trapped) changes no answer, and is the same after the call.
+// trapped) changes no answer, and is the same after the call, with the exceptions that were raised before.
 #pragma once
 
 #include <cstddef>

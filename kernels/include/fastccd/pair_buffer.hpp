@@ -7,6 +7,7 @@
 #include <limits>
 #include <new>
 #include <span>
+#include <utility>
 
 #include <fastccd/aligned_doubles.hpp>
 #include <fastccd/pair_view.hpp>
@@ -20,6 +21,14 @@ namespace fastccd {
 class PairBuffer {
 public:
     PairBuffer() = default;
+    /// What is moved from is empty.
+    PairBuffer(PairBuffer&& other) noexcept : data_{std::move(other.data_)}, size_{std::exchange(other.size_, 0)} {}
+    PairBuffer& operator=(PairBuffer&& other) noexcept
+    {
+        data_ = std::move(other.data_);
+        size_ = std::exchange(other.size_, 0);
+        return *this;
+    }
 
     explicit PairBuffer(std::size_t size) : size_{size}
     {
