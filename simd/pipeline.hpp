@@ -208,7 +208,7 @@ private:
             record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters.t_max);
             const Screening found = screen(record);
             const unsigned in_use = lanes_in_use<S>(count - i);
-            if ((in_use & found.beyond) != 0) examine_again(parts, first + i, in_use & found.beyond);
+            if ((in_use & found.beyond) != 0) kept += examine_again(parts, first + i, in_use & found.beyond);
             unsigned lanes = in_use & found.kept;
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
@@ -259,10 +259,11 @@ private:
         root_stages.take(record, lanes >> k * width & lanes_in_use<L>(width));
     }
 
-    /// Pairs beyond the range in which they were examined, in double.
+    /// Pairs beyond the range in which they were examined, in double. Returns how many screening leaves.
     template <class S>
-    __attribute__((noinline)) void examine_again(const Parts<S>& parts, std::size_t first, unsigned beyond)
+    __attribute__((noinline)) std::size_t examine_again(const Parts<S>& parts, std::size_t first, unsigned beyond)
     {
+        std::size_t kept = 0;
         for (unsigned k = 0; k < Parts<S>::count; ++k) {
             const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
             if (lanes == 0) continue;
@@ -270,8 +271,10 @@ private:
             const Screening found = screen_again(parts.at[k], record);
             record.pair = source.numbers(first + k * width);
             leave_undecided(scratch, record.pair, lanes & found.beyond);
+            kept += static_cast<unsigned>(__builtin_popcount(lanes & found.kept));
             examine(record, lanes & found.kept);
         }
+        return kept;
     }
 
     /// Certificates that need more than screening has computed, for some lanes, of which those are left that have none. Returns their

@@ -133,6 +133,49 @@ double ratio_of_halved_cubics(const Input& in, const ComputedInSingle& c)
     return worst;
 }
 
+/// Of one component of a quadratic on both halves, of which on_first and on_second are twice the exact coefficients.
+template <class L>
+double ratio_of_halves(const portable::HalvedQuadratic<L>& h, const std::array<ExactVector, 3>& on_first,
+                       const std::array<ExactVector, 3>& on_second, std::size_t axis, double bound)
+{
+    const Exact two = 2.0, middle{number(h.middle)};
+    return std::max({(on_first[0][axis] - two * Exact(number(h.start))).magnitude_in(2 * bound),
+                     (on_first[1][axis] - Exact(number(h.first))).magnitude_in(bound),
+                     (two * on_first[2][axis] - middle).magnitude_in(bound), (two * on_second[0][axis] - middle).magnitude_in(bound),
+                     (on_second[1][axis] - Exact(number(h.second))).magnitude_in(bound),
+                     (on_second[2][axis] - two * Exact(number(h.end))).magnitude_in(2 * bound)});
+}
+
+/// Of the cross products of r1, r2, r3 on both halves, in units of their bound, or of the sum of three in units of its own.
+double ratio_of_halved_quadratics(const Input& in, const ComputedInSingle& c, bool sum)
+{
+    const ExactRelativeMotion exact{in.x.data(), in.t_max};
+    const auto halved_along = [](const auto& q, std::size_t axis) {
+        const auto of = [&](const auto& v) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
+        return portable::halved(of(q.start), of(q.twice_middle), of(q.end));
+    };
+    double worst = 0;
+    const auto look_at = [&](const auto& computed, auto at_i, auto at_j, double factor) {
+        const auto on_first = twice_cross(at_i(0.0), at_j(0.0), at_i(0.5), at_j(0.5));
+        const auto on_second = twice_cross(at_i(0.5), at_j(0.5), at_i(1.0), at_j(1.0));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            worst = std::max(worst, ratio_of_halves(halved_along(computed, axis), on_first, on_second, axis, factor * area_of(c.scale, axis)));
+    };
+    if (sum) {
+        const auto between = [&](std::size_t to) { return [&exact, to](double s) { return exact.at(to, s) - exact.at(1, s); }; };
+        look_at(portable::subtract_then_add(portable::cross_product(c.r, 1, 2), portable::cross_product(c.r, 0, 2),
+                                            portable::cross_product(c.r, 0, 1)),
+                between(2), between(0), c.bounds.halves.quadratic_sum);
+        return worst;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto position_of = [&](std::size_t point) { return [&exact, point](double s) { return exact.at(point, s); }; };
+        const std::size_t j = (i + 1) % 3;
+        look_at(portable::cross_product(c.r, static_cast<int>(i), static_cast<int>(j)), position_of(i), position_of(j), c.bounds.halves.quadratic);
+    }
+    return worst;
+}
+
 /// On [a, b], as a multiple of the bound from extents or of the one from magnitudes.
 double cubic_on_interval_ratio(const Input& in, bool from_magnitudes)
 {
@@ -231,6 +274,12 @@ TEST(ErrorBounds, CoefficientsInSinglePrecision)
         }), shifts);
         expect_bound("gap, single", least, in_single(ratio_of_gaps), shifts);
         expect_bound("cubic on halves, single", least, in_single(ratio_of_halved_cubics), shifts);
+        expect_bound("quadratic on halves, single", least, in_single([](const Input& in, const ComputedInSingle& c) {
+            return ratio_of_halved_quadratics(in, c, false);
+        }), shifts);
+        expect_bound("quadratic_sum on halves, single", least, in_single([](const Input& in, const ComputedInSingle& c) {
+            return ratio_of_halved_quadratics(in, c, true);
+        }), shifts);
     }
 }
 
