@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Records and tables of the benchmarks. Called by tools/bench.sh.
 
+report.py groups                     of the names on standard input, one a line: a regular expression for each group that belongs together
 report.py merge FOLDER RUN.json...   one record FOLDER/<cpu>-<isa>.json from the runs of several programs; prints its path
 report.py table RECORD.json          Markdown tables of a record
 report.py readme                     puts the tables of every record in results/ into README.md, between the markers
@@ -23,12 +24,43 @@ def slug(context):
     return "-".join(re.findall(r"[a-z0-9]+", cpu.lower()) + [context["best_isa"]])
 
 
+def group_of(name):
+    """What differs only in instruction set, question and threads, of the narrow phase; of the rest, in instruction set and stage or library."""
+    parts = name.split("/")
+    if parts[0] in ("vertex_face", "edge_edge"):
+        return (parts[0], *parts[2:5])
+    if parts[0] in ("stage", "search", "peer"):
+        return (*parts[:2], next(part for part in reversed(parts) if part not in ("manual_time", "real_time")))
+    return (parts[0],)
+
+
+def print_groups(names):
+    groups = {}
+    for name in names:
+        groups.setdefault(group_of(name), []).append(name)
+    for group in groups.values():
+        print("^(" + "|".join(group) + ")$")
+
+
+def refuse_other_answers(record):
+    """A fast wrong answer is no result: the same pairs have the same contacts in every layout, instruction set and number of threads."""
+    contacts = {}
+    for name, row in rows_of(record).items():
+        kind, _, data, _, scalar, *question = name.split("/") if name.startswith(("vertex_face/", "edge_edge/")) else [None] * 5
+        if kind is None or "contacts" not in row:
+            continue
+        separation = "separation" in question  # one time per pair and contacts alone are two forms of one answer
+        if contacts.setdefault((kind, data, scalar, separation), row["contacts"]) != row["contacts"]:
+            sys.exit(f"{name} has {row['contacts']:.0f} contacts, where others have {contacts[kind, data, scalar, separation]:.0f}")
+
+
 def merge(folder, runs):
     record = None
     for run in runs:
         run = json.loads(pathlib.Path(run).read_text())
-        # The median is the result, the coefficient of variation says how far to trust it.
+        # The median is the result, the coefficient of variation says how far to trust it. In the order of the program, not of turns.
         kept = [b for b in run["benchmarks"] if b.get("aggregate_name") in ("median", "cv")]
+        kept.sort(key=lambda b: b["family_index"])
         if record is None:
             record = run
             record["benchmarks"] = []
@@ -36,6 +68,7 @@ def merge(folder, runs):
             for key in ("host_name", "executable"):
                 record["context"].pop(key, None)
         record["benchmarks"] += kept
+    refuse_other_answers(record)
     path = pathlib.Path(folder) / (slug(record["context"]) + ".json")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(record, indent=1) + "\n")
@@ -232,6 +265,8 @@ def write_readme():
 
 def main(arguments):
     match arguments:
+        case ["groups"]:
+            print_groups(sys.stdin.read().split())
         case ["merge", folder, *runs] if runs:
             merge(folder, runs)
         case ["table", path]:

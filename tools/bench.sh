@@ -32,19 +32,21 @@ if $quick; then
   options=(--benchmark_repetitions=3 --benchmark_min_time=0.02)
   filter=${filter:-'/(random|generated|cloth-ball)/(blocked|indexed)/double/threads:1/|^stage/.*/random$|^peer/.*/random/'}
 fi
-[ -z "$filter" ] || options+=("--benchmark_filter=$filter")
 commit=$(git -C "$root" describe --always --dirty 2>/dev/null || echo unknown)
-options+=(--benchmark_report_aggregates_only=true "--benchmark_context=commit=$commit" --benchmark_out_format=json)
+options+=(--benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true "--benchmark_context=commit=$commit" --benchmark_out_format=json)
 
 runs=()
 for program in "${programs[@]}"; do
   names=$("$build/bench/$program" ${filter:+"--benchmark_filter=$filter"} --benchmark_list_tests 2>/dev/null || true)
   [ -n "$names" ] || continue
   say "$program (medians of repetitions)"
-  out=$build/bench/$program.json
-  "$build/bench/$program" "${options[@]}" "--benchmark_out=$out" 2>"$out.log" | grep --line-buffered -E '_median|ERROR' ||
-    { cat "$out.log" >&2; exit 1; }
-  runs+=("$out")
+  # What is compared with one another takes turns, so that a bad minute of the machine is one of all.
+  while read -r group; do
+    out=$build/bench/run_${#runs[@]}.json
+    "$build/bench/$program" "${options[@]}" "--benchmark_filter=$group" "--benchmark_out=$out" 2>"$out.log" </dev/null |
+      grep --line-buffered -E '_median|ERROR' || { cat "$out.log" >&2; exit 1; }
+    runs+=("$out")
+  done < <(python3 "$root/bench/report.py" groups <<<"$names")
 done
 [ ${#runs[@]} -gt 0 ] || { echo "no benchmark has a name that matches $filter" >&2; exit 1; }
 
