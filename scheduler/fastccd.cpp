@@ -45,17 +45,25 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
     return {};
 }
 
-/// A worker that also keeps the contacts and invalid pairs of its tiles, tile after tile.
+/// A worker that also keeps the contacts of its tiles, in chunks that stay where they are. Where oneTBB's memory allocator is installed, it
+/// keeps them for the next call; pages that the system clears anew for each call would take as long as all else, and longer.
 struct CollectingWorker : TileWorker {
-    std::vector<Contact> contacts;
-    std::vector<std::size_t> invalid;
+    using Chunk = std::vector<Contact, tbb::cache_aligned_allocator<Contact>>;
+
+    /// A chunk with room for as many contacts as a tile can have, or for `more`.
+    Chunk& chunk_for(std::size_t more)
+    {
+        if (chunks.empty() || chunks.back().capacity() - chunks.back().size() < more) chunks.emplace_back().reserve(tile_pairs);
+        return chunks.back();
+    }
+
+    std::vector<Chunk> chunks;
 };
 
-/// Where the results of one tile lie in its worker.
-struct TileShare {
-    const CollectingWorker* worker = nullptr;
-    std::size_t contacts_begin = 0, contacts_end = 0;
-    std::size_t invalid_begin = 0, invalid_end = 0;
+/// What one tile reports, in pair order.
+struct TileContacts {
+    std::span<const Contact> contacts;  ///< In a chunk.
+    std::vector<std::size_t> invalid;
 };
 
 /// Room for `more` at the end, growing as push_back does: a list that many calls append to is not moved by each.
@@ -72,35 +80,31 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
     Job job = no_job(kind);
     if (const Status status = prepare(kind, pairs, options, false, job); !status.ok()) return status;
 
-    // Each worker appends to its own lists; shares put them back in pair order.
     const std::size_t most = pairs_per_tile(pairs.source.size);
-    std::vector<TileShare> shares((pairs.source.size + most - 1) / most);
+    std::vector<TileContacts> tiles((pairs.source.size + most - 1) / most);
     Workers<CollectingWorker> workers;
-    const Summary totals = for_each_tile(
-        job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t count) {
-            TileShare& share = shares[first / most];
-            share = {&worker, worker.contacts.size(), 0, worker.invalid.size(), 0};
-            for_each_bit(worker.scratch.reported, count, [&](std::size_t i) {
-                const double t = worker.scratch.time[i];
-                if (std::isnan(t))
-                    worker.invalid.push_back(first + i);
-                else
-                    worker.contacts.push_back(contact_of(job, worker.scratch, first, i));
-            });
-            share.contacts_end = worker.contacts.size();
-            share.invalid_end = worker.invalid.size();
+    const Summary totals = for_each_tile(job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t count) {
+        const TileScratch& scratch = worker.scratch;
+        const std::size_t reported = count_bits(scratch.reported, count);
+        if (reported == 0) return;
+        CollectingWorker::Chunk& chunk = worker.chunk_for(reported);
+        TileContacts& tile = tiles[first / most];
+        const std::size_t begin = chunk.size();
+        for_each_bit(scratch.reported, count, [&](std::size_t i) {
+            if (std::isnan(scratch.time[i]))
+                tile.invalid.push_back(first + i);
+            else
+                chunk.push_back(contact_of(job, scratch, first, i));
         });
+        tile.contacts = std::span{chunk}.subspan(begin);
+    });
 
     // Both before either is written to: on want of memory the caller's lists stay as they were.
     reserve_more(contacts, totals.contacts);
     if (invalid != nullptr) reserve_more(*invalid, totals.invalid);
-    for (const TileShare& share : shares) {
-        const auto at = [](const auto& list, std::size_t i) { return list.begin() + static_cast<std::ptrdiff_t>(i); };
-        contacts.insert(contacts.end(), at(share.worker->contacts, share.contacts_begin),
-                        at(share.worker->contacts, share.contacts_end));
-        if (invalid != nullptr)
-            invalid->insert(invalid->end(), at(share.worker->invalid, share.invalid_begin),
-                            at(share.worker->invalid, share.invalid_end));
+    for (const TileContacts& tile : tiles) {
+        contacts.insert(contacts.end(), tile.contacts.begin(), tile.contacts.end());
+        if (invalid != nullptr) invalid->insert(invalid->end(), tile.invalid.begin(), tile.invalid.end());
     }
     if (summary != nullptr) *summary = totals;
     return {};

@@ -40,6 +40,14 @@ void for_each_bit(const std::uint64_t (&words)[tile_pairs / 64], std::size_t cou
             visit(64 * w + static_cast<std::size_t>(std::countr_zero(bits)));
 }
 
+/// How many bits are set in the words of a tile of `count` pairs.
+inline std::size_t count_bits(const std::uint64_t (&words)[tile_pairs / 64], std::size_t count)
+{
+    std::size_t bits = 0;
+    for (std::size_t w = 0; w < (count + 63) / 64; ++w) bits += static_cast<std::size_t>(std::popcount(words[w]));
+    return bits;
+}
+
 /// Bit i of a tile's words.
 inline bool is_set(const std::uint64_t (&words)[tile_pairs / 64], std::size_t i) { return (words[i / 64] >> i % 64 & 1) != 0; }
 

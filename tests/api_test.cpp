@@ -194,6 +194,33 @@ TEST(Api, NeverZeroWhenApartAtTheStart)
     EXPECT_EQ(answer(oracle::Kind::vertex_face, interleaved({touching}), {}).toi[0], 0.0);
 }
 
+/// More of them than a thread collects in one piece, after what the lists held before.
+TEST(Api, ContactsOfManyTilesAreThoseOfTheTimes)
+{
+    auto pairs = uniform_pairs(60'000);
+    for (std::size_t i = 100; i < pairs.size(); i += 7'001) pairs[i][3][1] = not_a_number;
+    const PairView view = interleaved(pairs);
+    const std::vector<double> toi = answer(oracle::Kind::edge_edge, view, {}).toi;
+    std::vector<Contact> contacts(1);
+    std::vector<std::size_t> invalid(1);
+    ASSERT_TRUE(find_contacts(PairKind::edge_edge, view, {}, contacts, &invalid).ok());
+    std::size_t contact = 1, bad = 1;
+    for (std::size_t i = 0; i < toi.size(); ++i) {
+        if (std::isnan(toi[i])) {
+            ASSERT_LT(bad, invalid.size());
+            EXPECT_EQ(invalid[bad++], i);
+        } else if (toi[i] < infinity) {
+            ASSERT_LT(contact, contacts.size());
+            EXPECT_EQ(contacts[contact].pair, i);
+            EXPECT_EQ(contacts[contact++].toi, toi[i]);
+        }
+    }
+    EXPECT_EQ(contact, contacts.size());
+    EXPECT_EQ(bad, invalid.size());
+    EXPECT_GT(contact, 10'000u);
+    EXPECT_GT(bad, 8u);
+}
+
 TEST(Api, ABufferMovedFromIsEmpty)
 {
     PairBuffer from{3};
