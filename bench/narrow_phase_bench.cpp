@@ -42,6 +42,7 @@ struct Input {
     std::optional<LayoutCopy> packed;
     std::optional<StreamingLimit> limit;
     MovingMesh mesh;
+    std::vector<double> toi;  ///< Results of all calls, in the same memory: large sets took up to twice as long in fresh one, in some runs.
 };
 
 MovingMesh moving_mesh(const SceneStep& scene)
@@ -69,7 +70,8 @@ Input& input(const Case& c)
         return *latest;
     latest.reset();
     const Dataset& set = dataset(c.data, c.kind);
-    latest = std::make_unique<Input>(Input{c.data, c.kind, c.layout, c.scalar, set.packed.size(), 0, {}, {}, {}});
+    latest = std::make_unique<Input>(Input{c.data, c.kind, c.layout, c.scalar, set.packed.size(), 0, {}, {}, {}, {}});
+    latest->toi.resize(latest->pairs);
     if (c.layout == Layout::indexed) {
         latest->mesh = moving_mesh(set.scene.value());
         latest->bytes = set.packed.size() * sizeof(VertexFace);
@@ -85,7 +87,7 @@ using Call = std::function<Status(Summary&)>;
 
 /// `first`... are the leading arguments of the public functions: kind and view, or mesh and index pairs.
 template <class A, class B>
-Call call_of(Question question, const Options& options, A first, B second, std::size_t pairs)
+Call call_of(Question question, const Options& options, A first, B second, std::span<double> toi)
 {
     switch (question) {
         case Question::contacts:
@@ -101,7 +103,7 @@ Call call_of(Question question, const Options& options, A first, B second, std::
         case Question::dense:
         case Question::separation: break;
     }
-    return [=, toi = std::vector<double>(pairs)](Summary& summary) mutable {
+    return [=](Summary& summary) {
         return time_of_impact(first.get(), second, options, toi, &summary);
     };
 }
@@ -123,17 +125,17 @@ double mean_edge_length(const Dataset& set)
     return sum / static_cast<double>(set.scene->edges.size());
 }
 
-Call call_of(const Case& c, const Input& in)
+Call call_of(const Case& c, Input& in)
 {
     Options options;
     options.isa = c.isa;
     if (has_separation(c.question)) options.minimum_separation = bench_separation * mean_edge_length(dataset(c.data, c.kind));
     if (c.layout != Layout::indexed)
-        return call_of(c.question, options, std::cref(in.kind), in.packed->view(), in.pairs);
+        return call_of(c.question, options, std::cref(in.kind), in.packed->view(), in.toi);
     const Dataset& set = dataset(c.data, c.kind);
     if (c.kind == PairKind::vertex_face)
-        return call_of(c.question, options, std::cref(in.mesh), std::span<const VertexFace>(set.vertex_face), in.pairs);
-    return call_of(c.question, options, std::cref(in.mesh), std::span<const EdgeEdge>(set.edge_edge), in.pairs);
+        return call_of(c.question, options, std::cref(in.mesh), std::span<const VertexFace>(set.vertex_face), in.toi);
+    return call_of(c.question, options, std::cref(in.mesh), std::span<const EdgeEdge>(set.edge_edge), in.toi);
 }
 
 /// A fast wrong answer is no result: the same pairs must give the same answer in every layout, instruction set and

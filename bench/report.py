@@ -4,7 +4,8 @@
 report.py groups                     of the names on standard input, one a line: a regular expression for each group that belongs together
 report.py merge FOLDER RUN.json...   one record FOLDER/<cpu>-<isa>.json from the runs of several programs; prints its path
 report.py table RECORD.json          Markdown tables of a record
-report.py readme                     puts the tables of every record in results/ into README.md, between the markers
+report.py readme                     writes the tables of every record in results/ to its README.md, and the goals of the latest one with
+                                     AVX-512 into README.md here, between the markers
 """
 
 import json
@@ -14,7 +15,7 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-BEGIN, END = "<!-- begin results -->", "<!-- end results -->"
+BEGIN, END = "<!-- begin goals -->", "<!-- end goals -->"
 
 
 def slug(context):
@@ -241,12 +242,16 @@ def mesh_table(rows):
     return ["what is made", "data", "vertices", "ms", "spread"], out
 
 
-def tables(record):
-    context, rows = record["context"], rows_of(record)
-    isas = context["isas"].split()
-    text = (f"{context['cpu']}, {context['num_cpus']} threads, {context['compiler']}, `{context['flags']}`, "
+def origin(context):
+    return (f"{context['cpu']}, {context['num_cpus']} threads, {context['compiler']}, `{context['flags']}`, "
             f"{context['date'][:10]}, commit {context.get('commit', 'unknown')}, "
             f"load average at the start {context['load_avg'][0]:.1f}.\n")
+
+
+def tables(record):
+    rows = rows_of(record)
+    isas = record["context"]["isas"].split()
+    text = origin(record["context"])
     for title, (header, body) in (("Goals", goal_table(rows)), ("Narrow phase", narrow_phase_table(rows, isas)),
                                   ("Moving mesh", mesh_table(rows)), ("Stages", stage_table(rows, isas)), ("Certified search", search_table(rows, isas)),
                                   ("Peers, one thread", peer_table(rows))):
@@ -256,11 +261,19 @@ def tables(record):
 
 
 def write_readme():
+    records = {path.stem: json.loads(path.read_text()) for path in sorted((HERE / "results").glob("*.json"))}
+    text = ("# Results\n\nWritten by `tools/bench.sh` from the records beside it; [../README.md](../README.md) says what is measured. The report of speed\n"
+            "against error is in `report/`, what `tools/run.sh` printed in `run.txt`, what `truth_test` printed in `truth.txt`.\n\n")
+    text += "".join(f"- [{name}](#{name})\n" for name in records)
+    (HERE / "results" / "README.md").write_text(text + "".join(f"\n### {name}\n\n{tables(record)}" for name, record in records.items()))
+
+    with_goals = [record for record in records.values() if record["context"]["best_isa"] == "avx512"]
+    if not with_goals:
+        return
+    latest = max(with_goals, key=lambda record: record["context"]["date"])
     readme = HERE / "README.md"
     before, rest = readme.read_text().split(BEGIN)
-    after = rest.split(END)[1]
-    parts = [f"\n### {path.stem}\n\n{tables(json.loads(path.read_text()))}" for path in sorted((HERE / "results").glob("*.json"))]
-    readme.write_text(before + BEGIN + "\n" + ("".join(parts) or "\nNothing is recorded yet.\n") + "\n" + END + after)
+    readme.write_text(before + BEGIN + "\n" + origin(latest["context"]) + "\n" + table(*goal_table(rows_of(latest))) + END + rest.split(END)[1])
 
 
 def main(arguments):

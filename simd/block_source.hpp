@@ -151,7 +151,7 @@ FASTCCD_INLINE void transpose_block(const double* const (&records)[4][block_pair
 /// Asks for memory from one address to another, line by line, and returns where it stopped (a function without a result would be
 /// taken for one without effect). Not inlined, and its loops not unrolled: lines that one and the same instruction asks for, in their
 /// order, come faster, probably because the hardware's own prefetchers take them up. With two instructions in turn half as many
-/// lines are under way (bench/README.md). Static, so that g++ sees which registers it leaves alone: all vectors.
+/// lines are under way (bench/LIMITS.md). Static, so that g++ sees which registers it leaves alone: all vectors.
 [[maybe_unused]] __attribute__((noinline)) static std::uintptr_t ask_for(std::uintptr_t next, std::uintptr_t end, CacheLevel into)
 {
     constexpr std::uintptr_t line = 64;
@@ -185,7 +185,7 @@ public:
         const auto data = reinterpret_cast<std::uintptr_t>(pairs.data());
         last_start_ = data + all - most_ahead_;
         next_ = data + first * pair;
-        // About what memory delivers while a pair is screened; a half to five sixths make no difference (bench/README.md).
+        // About what memory delivers while a pair is screened; a half to five sixths make no difference (bench/LIMITS.md).
         rate_ = pair * 2 / 3;
     }
 
@@ -223,7 +223,7 @@ private:
     static constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double);
     /// How far ahead of the block being read pairs are asked for, at most: 16 blocks of doubles, at least half of it. With more, lines
     /// leave the first-level cache again before they are read. In the second-level one there is room: 16 to 32 blocks, of which up
-    /// to 64 are as good, and 8 take up to a tenth longer (bench/README.md).
+    /// to 64 are as good, and 8 take up to a tenth longer (bench/LIMITS.md).
     static constexpr std::uintptr_t first_level_ahead = 16 * block_bytes;
 
     /// A line of each of the 24 arrays, at these bytes of the x, y and z of a point.
@@ -289,7 +289,7 @@ public:
     }
 
     /// Before a block of the group is read. The one after it is copied then, so that memory is asked at an even rate, and nothing is
-    /// read right after it was written: with a whole group copied first, strided pairs took a sixth longer (bench/README.md).
+    /// read right after it was written: with a whole group copied first, strided pairs took a sixth longer (bench/LIMITS.md).
     FASTCCD_INLINE void at_block()
     {
         if (to_copy_ < group_end_) copy_next();
@@ -302,7 +302,7 @@ public:
     [[nodiscard]] FASTCCD_INLINE const double* blocks() const { return is_in_place() ? in_place_ : scratch_.blocks[0]; }
 
     /// Before a batch of a block of the group is read. Batch by batch, although 8 blocks lie between what is asked for and what is
-    /// read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/README.md).
+    /// read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/LIMITS.md).
     FASTCCD_INLINE void at_batch(const double* block)
     {
         if (is_in_place()) prefetcher_.at_pairs(block, Lane<Batch>::width);

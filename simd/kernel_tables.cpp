@@ -106,7 +106,7 @@ Preferences preferences() noexcept
 #if defined(FASTCCD_HAVE_X86)
     // AMD's family 25 has AVX-512 from Zen 4 on. There packed scenes take 14 to 36 % less by way of the second-level cache; on
     // family 26 they took 7 % more, and on Zen 3 it made no difference. And there scenes take a fifth longer in single precision, as
-    // to convert is half of the work; on family 26 they take 3 to 13 % less from memory, the earliest contact 2 to 21 % (bench/README.md).
+    // to convert is half of the work; on family 26 they take 3 to 13 % less from memory, the earliest contact 2 to 21 % (bench/LIMITS.md).
     __builtin_cpu_init();
     if (__builtin_cpu_is("amdfam19h") && __builtin_cpu_supports("avx512f")) return {CacheLevel::second, true};
 #endif

@@ -220,7 +220,7 @@ private:
     }
 
     /// What was examined goes on in double: both parts at once if that makes a batch at most, since a store for each field and batch
-    /// is most of what queueing takes (bench/README.md).
+    /// is most of what queueing takes (bench/LIMITS.md).
     template <class S>
     FASTCCD_INLINE void take_parts(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
     {

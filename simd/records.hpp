@@ -60,7 +60,7 @@ FASTCCD_INLINE void for_each_common_field(Record& record, Visit& visit)
     visit(record.pair);
 }
 
-// Scale and cubic are computed again after a queue: where one lane in five goes on, moving them takes longer (bench/README.md).
+// Scale and cubic are computed again after a queue: where one lane in five goes on, moving them takes longer (bench/LIMITS.md).
 
 template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const PairQueue&, Record& record, Visit visit)

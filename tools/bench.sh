@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Sets everything up, builds, runs the benchmarks, records the medians and prints them as tables.
 #
-#   tools/bench.sh                 everything that is run by default; writes bench/results/<cpu>-<isa>.json and bench/README.md
+#   tools/bench.sh                 everything that is run by default; writes bench/results/<cpu>-<isa>.json and the tables beside it
 #   tools/bench.sh --quick         few and short; the record stays in the build folder
 #   tools/bench.sh --filter REGEX  only benchmarks of such names, out of all there are; the record stays in the build folder
 source "$(dirname "$0")/setup.sh"
@@ -27,7 +27,7 @@ configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_BENCHMARKS=ON -- "${programs[@]
 data=${FASTCCD_DATA:-$root/../shared/data}
 [ -d "$data" ] || printf '\n!! No data folder at %s: the public scenes are left out. Set FASTCCD_DATA.\n' "$data"
 
-options=(--benchmark_repetitions=5 --benchmark_min_time=0.1)
+options=(--benchmark_repetitions=5 --benchmark_min_time=0.2)
 if $quick; then
   options=(--benchmark_repetitions=3 --benchmark_min_time=0.02)
   filter=${filter:-'/(random|generated|cloth-ball)/(blocked|indexed)/double/threads:1/|^stage/.*/random$|^peer/.*/random/'}
