@@ -139,7 +139,8 @@ Call call_of(const Case& c, Input& in)
 }
 
 /// A fast wrong answer is no result: the same pairs must give the same answer in every layout, instruction set and
-/// thread count. Float coordinates are other pairs where the data are not float.
+/// thread count. Float coordinates are other pairs where the data are not float. What other runs answered is compared when they are
+/// merged (report.py).
 bool same_answer_as_before(const Case& c, const Summary& summary)
 {
     using Key = std::tuple<std::string, PairKind, PairView::Scalar, Question>;
@@ -194,6 +195,8 @@ void run(benchmark::State& state, const Case& c)
     }
     state.counters["pairs"] = static_cast<double>(in.pairs);
     if (!is_earliest(c.question)) state.counters["contacts"] = static_cast<double>(summary.contacts);
+    state.counters["earliest_pair"] = static_cast<double>(summary.earliest.pair);
+    state.counters["earliest_toi"] = summary.earliest.toi;
     state.counters["scalar_share"] = static_cast<double>(summary.scalar_pairs) / static_cast<double>(in.pairs);
 }
 

@@ -44,15 +44,20 @@ def print_groups(names):
 
 
 def refuse_other_answers(record):
-    """A fast wrong answer is no result: the same pairs have the same contacts in every layout, instruction set and number of threads."""
-    contacts = {}
+    """A fast wrong answer is no result: the same pairs have the same contacts and the same earliest one, whatever the layout, instruction
+    set, number of threads and form of the answer."""
+    answers = {}
     for name, row in rows_of(record).items():
-        kind, _, data, _, scalar, *question = name.split("/") if name.startswith(("vertex_face/", "edge_edge/")) else [None] * 5
-        if kind is None or "contacts" not in row:
+        if not name.startswith(("vertex_face/", "edge_edge/")):
             continue
-        separation = "separation" in question  # one time per pair and contacts alone are two forms of one answer
-        if contacts.setdefault((kind, data, scalar, separation), row["contacts"]) != row["contacts"]:
-            sys.exit(f"{name} has {row['contacts']:.0f} contacts, where others have {contacts[kind, data, scalar, separation]:.0f}")
+        kind, _, data, _, scalar, *question = name.split("/")
+        separation = question[0].startswith("separation")  # or threads:N, where one time per pair is asked for
+        for what in ("contacts", "earliest_pair", "earliest_toi"):
+            if what not in row:  # the earliest contact alone counts no others
+                continue
+            first = answers.setdefault((kind, data, scalar, separation, what), row[what])
+            if first != row[what]:
+                sys.exit(f"{name}: {what} is {row[what]!r}, of the same pairs elsewhere {first!r}")
 
 
 def merge(folder, runs):

@@ -50,7 +50,7 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
 struct CollectingWorker : TileWorker {
     using Chunk = std::vector<Contact, tbb::cache_aligned_allocator<Contact>>;
 
-    /// A chunk with room for as many contacts as a tile can have, or for `more`.
+    /// A chunk with room for `more` contacts, at most those of a tile.
     Chunk& chunk_for(std::size_t more)
     {
         if (chunks.empty() || chunks.back().capacity() - chunks.back().size() < more) chunks.emplace_back().reserve(tile_pairs);
