@@ -2,11 +2,13 @@
 #include <fastccd/fastccd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include <tbb/task_arena.h>
+
+#include <c_structs.hpp>
 #include <fastccd/fastccd.hpp>
 #include <guarded.hpp>
 
@@ -34,52 +36,28 @@ constexpr std::size_t first_options = 40, first_mesh = 64, first_summary = 88, f
 static_assert(sizeof(std::size_t) != 8 || (sizeof(fastccd_options) >= first_options && sizeof(fastccd_mesh) >= first_mesh &&
                                            sizeof(fastccd_summary) >= first_summary && sizeof(fastccd_step) >= first_step));
 
-/// No struct will ever be as large: its size was not set.
-constexpr std::size_t most_size = 4096;
-
 bool is_kind(int kind) { return kind == FASTCCD_VERTEX_FACE || kind == FASTCCD_EDGE_EDGE; }
 bool is_isa(int isa) { return isa >= FASTCCD_ISA_AUTOMATIC && isa <= FASTCCD_ISA_NEON; }
-
-/// Copies a struct of the caller into `known`; false if its size is not set, or if fields that this version does not know
-/// are not 0.
-template <class Struct>
-bool read_struct(const Struct& given, std::size_t least, Struct& known)
-{
-    const std::size_t size = given.size;
-    if (size < std::min(least, sizeof(Struct)) || size > most_size) return false;
-    std::memcpy(&known, &given, std::min(size, sizeof(Struct)));
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
-    return size <= sizeof(Struct) || std::all_of(bytes + sizeof(Struct), bytes + size, [](unsigned char byte) { return byte == 0; });
-}
-
-/// Writes what the caller's struct has room for, and zeros into fields this version does not know.
-template <class Struct>
-void write_struct(Struct known, Struct& given)
-{
-    const std::size_t size = known.size = given.size;
-    std::memcpy(&given, &known, std::min(size, sizeof(Struct)));
-    if (size > sizeof(Struct)) std::memset(reinterpret_cast<unsigned char*>(&given) + sizeof(Struct), 0, size - sizeof(Struct));
-}
-
-template <class Struct>
-bool has_size(const Struct* given, std::size_t least)
-{
-    return given == nullptr || (given->size >= std::min(least, sizeof(Struct)) && given->size <= most_size);
-}
 
 fastccd_options to_c(const Options& options)
 {
     return {sizeof(fastccd_options),        options.tolerance, options.t_max, static_cast<std::int32_t>(options.isa), options.reference ? 1 : 0,
-            options.exact ? 1 : 0, 0, options.minimum_separation, options.distance_tolerance};
+            options.exact ? 1 : 0, 0, options.minimum_separation, options.distance_tolerance, 0, 0};
 }
 
+/// Options of a call, and how many threads may work for it; 0: as many as work in the caller's arena.
+struct CallOptions : Options {
+    int threads = 0;
+};
+
 /// Defaults for a null pointer.
-int to_cpp(const fastccd_options* given, Options& options)
+int to_cpp(const fastccd_options* given, CallOptions& options)
 {
     if (given == nullptr) return FASTCCD_OK;
     fastccd_options known = to_c({});
-    if (!read_struct(*given, first_options, known)) return FASTCCD_BAD_ARGUMENT;
+    if (!read_struct(*given, first_options, known) || known.threads < 0) return FASTCCD_BAD_ARGUMENT;
     if (!is_isa(known.isa)) return FASTCCD_ISA_UNAVAILABLE;
+    options.threads = known.threads;
     options.tolerance = known.tolerance;
     options.t_max = known.t_max;
     options.isa = static_cast<Isa>(known.isa);
@@ -105,9 +83,24 @@ void report(const Summary& from, fastccd_summary* to)
                  *to);
 }
 
+void report(const Contact& from, fastccd_contact& to) { to = {from.pair, from.toi, from.proven ? 1 : 0, from.at_start ? 1 : 0}; }
+
+/// What `call` returns, an error, called where no more threads work than that.
+template <class Call>
+int with_threads(int threads, const Call& call)
+{
+    if (threads == 0 || threads >= tbb::this_task_arena::max_concurrency()) return call();
+    int error = FASTCCD_OK;
+    const Status status = guarded([&] {
+        tbb::task_arena{threads}.execute([&] { error = call(); });
+        return Status{};
+    });
+    return status.ok() ? error : static_cast<int>(status.error);
+}
+
 /// The arguments that all calls for many pairs share.
 struct Request {
-    Options options;
+    CallOptions options;
     fastccd_summary* summary;
     fastccd_fault* fault;
 
@@ -119,7 +112,7 @@ struct Request {
     }
 };
 
-/// `call(options, toi, roots, summary)`, a dense answer.
+/// `call(options, toi, summary, roots)`, a dense answer.
 template <class Call>
 int dense(const Request& request, std::size_t count, double* toi, std::uint8_t* roots, const Call& call)
 {
@@ -140,11 +133,40 @@ int compact(const Request& request, fastccd_contact* contacts, std::size_t capac
     const Status status = call(request.options, list, nullptr, &summary);
     if (status.ok()) {
         *found = list.size();
-        const auto written = list.begin() + static_cast<std::ptrdiff_t>(std::min(capacity, list.size()));
-        std::transform(list.begin(), written, contacts, [](const Contact& c) { return fastccd_contact{c.pair, c.toi, c.proven ? 1 : 0, c.at_start ? 1 : 0}; });
+        for (std::size_t i = 0; i < std::min(capacity, list.size()); ++i) report(list[i], contacts[i]);
         report(summary, request.summary);
     }
     return report(status, request.fault);
+}
+
+/// `call(options, contact, summary)`, the first contact of all.
+template <class Call>
+int earliest(const Request& request, fastccd_contact* contact, const Call& call)
+{
+    if (contact == nullptr) return FASTCCD_BAD_ARGUMENT;
+    Contact found;
+    Summary summary;
+    const Status status = call(request.options, found, &summary);
+    if (status.ok()) {
+        report(found, *contact);
+        report(summary, request.summary);
+    }
+    return report(status, request.fault);
+}
+
+/// `call(options, step)`, the step that candidates of both kinds allow. `*step` is written whatever happens, 0 on every error.
+template <class Call>
+int collision_free(const void* vertex_face, std::size_t vertex_face_count, const void* edge_edge, std::size_t edge_edge_count,
+                   const fastccd_options* options, fastccd_step* step, const Call& call)
+{
+    if (step == nullptr || !has_size(step, first_step)) return FASTCCD_BAD_ARGUMENT;
+    CollisionFreeStep found;
+    CallOptions chosen;
+    int error = to_cpp(options, chosen);
+    if ((vertex_face == nullptr && vertex_face_count > 0) || (edge_edge == nullptr && edge_edge_count > 0)) error = FASTCCD_WRONG_SIZE;
+    if (error == FASTCCD_OK) error = with_threads(chosen.threads, [&] { return call(chosen, found); });
+    write_struct({0, found.step, found.pair, static_cast<std::int32_t>(found.kind), 0}, *step);
+    return error;
 }
 
 /// The mesh of a call; false: the struct cannot be read.
@@ -170,11 +192,35 @@ std::span<const EdgeEdge> edge_edge_pairs(const std::int32_t* pairs, std::size_t
     return {reinterpret_cast<const EdgeEdge*>(pairs), count};
 }
 
+/// `answer(request, view)` for packed pairs.
+template <class Answer>
+int of_packed(int kind, const double* pairs, std::size_t count, const fastccd_options* options, fastccd_summary* summary, const Answer& answer)
+{
+    Request request{{}, summary, nullptr};
+    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
+    return with_threads(request.options.threads, [&] { return answer(request, PairView::interleaved(pairs, count)); });
+}
+
+/// `answer(request, mesh, pairs)` for pairs of a mesh of either kind.
+template <class Answer>
+int of_mesh(const fastccd_mesh* mesh, int kind, const std::int32_t* pairs, std::size_t count, const fastccd_options* options,
+            fastccd_summary* summary, fastccd_fault* fault, const Answer& answer)
+{
+    Request request{{}, summary, fault};
+    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
+    return with_threads(request.options.threads, [&] {
+        MovingMesh moving;
+        if (!to_cpp(mesh, moving)) return static_cast<int>(FASTCCD_BAD_ARGUMENT);
+        return kind == FASTCCD_VERTEX_FACE ? answer(request, moving, vertex_face_pairs(pairs, count))
+                                           : answer(request, moving, edge_edge_pairs(pairs, count));
+    });
+}
+
 int single(PairKind kind, const double* x0, const double* x1, const fastccd_options* given, double* toi)
 {
     if (x0 == nullptr || x1 == nullptr || toi == nullptr) return FASTCCD_BAD_ARGUMENT;
     *toi = std::numeric_limits<double>::quiet_NaN();
-    Options options;
+    CallOptions options;
     if (const int error = to_cpp(given, options); error != FASTCCD_OK) return error;
     Point start[4], end[4];
     for (std::size_t i = 0; i < 4; ++i) {
@@ -198,7 +244,7 @@ const char* fastccd_version(void) { return FASTCCD_VERSION; }
 
 const char* fastccd_message(int error)
 {
-    if (error == FASTCCD_BAD_ARGUMENT) return "a pointer is null, a kind is unknown, or the size of a struct is not set";
+    if (error == FASTCCD_BAD_ARGUMENT) return "a pointer is null, a kind is unknown, the number of threads is negative, or the size of a struct is not set";
     if (error < FASTCCD_OK || error > FASTCCD_EXACT_SEPARATION) return "unknown error";
     return message(static_cast<Error>(error));
 }
@@ -228,46 +274,64 @@ int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastcc
 int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options, double* toi,
                                  uint8_t* roots, fastccd_summary* summary)
 {
-    Request request{{}, summary, nullptr};
-    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
-    return dense(request, count, toi, roots, [&](const auto&... outputs) {
-        return time_of_impact(static_cast<PairKind>(kind), PairView::interleaved(pairs, count), outputs...);
+    return of_packed(kind, pairs, count, options, summary, [&](const Request& request, const PairView& view) {
+        return dense(request, count, toi, roots,
+                     [&](const auto&... arguments) { return time_of_impact(static_cast<PairKind>(kind), view, arguments...); });
     });
 }
 
 int fastccd_pairs_find_contacts(int kind, const double* pairs, size_t count, const fastccd_options* options, fastccd_contact* contacts,
                                 size_t capacity, size_t* found, fastccd_summary* summary)
 {
-    Request request{{}, summary, nullptr};
-    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
-    return compact(request, contacts, capacity, found, [&](const Options& chosen, auto&&... outputs) {
-        return find_contacts(static_cast<PairKind>(kind), PairView::interleaved(pairs, count), chosen, outputs...);
+    return of_packed(kind, pairs, count, options, summary, [&](const Request& request, const PairView& view) {
+        return compact(request, contacts, capacity, found,
+                       [&](auto&&... arguments) { return find_contacts(static_cast<PairKind>(kind), view, arguments...); });
     });
+}
+
+int fastccd_pairs_earliest_contact(int kind, const double* pairs, size_t count, const fastccd_options* options, fastccd_contact* contact,
+                                   fastccd_summary* summary)
+{
+    return of_packed(kind, pairs, count, options, summary, [&](const Request& request, const PairView& view) {
+        return earliest(request, contact,
+                        [&](auto&&... arguments) { return earliest_contact(static_cast<PairKind>(kind), view, arguments...); });
+    });
+}
+
+int fastccd_pairs_collision_free_step(const double* vertex_face, size_t vertex_face_count, const double* edge_edge, size_t edge_edge_count,
+                                      const fastccd_options* options, fastccd_step* step, fastccd_fault* fault)
+{
+    return collision_free(vertex_face, vertex_face_count, edge_edge, edge_edge_count, options, step,
+                          [&](const Options& chosen, CollisionFreeStep& found) {
+                              return report(collision_free_step(PairView::interleaved(vertex_face, vertex_face_count),
+                                                                PairView::interleaved(edge_edge, edge_edge_count), chosen, found), fault);
+                          });
 }
 
 int fastccd_mesh_time_of_impact(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count, const fastccd_options* options,
                                 double* toi, uint8_t* roots, fastccd_summary* summary, fastccd_fault* fault)
 {
-    Request request{{}, summary, fault};
-    MovingMesh moving;
-    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
-    if (!to_cpp(mesh, moving)) return FASTCCD_BAD_ARGUMENT;
-    return dense(request, count, toi, roots, [&](const auto&... outputs) {
-        return kind == FASTCCD_VERTEX_FACE ? time_of_impact(moving, vertex_face_pairs(pairs, count), outputs...)
-                                           : time_of_impact(moving, edge_edge_pairs(pairs, count), outputs...);
+    return of_mesh(mesh, kind, pairs, count, options, summary, fault, [&](const Request& request, const MovingMesh& moving, auto candidates) {
+        return dense(request, count, toi, roots,
+                     [&](const auto&... arguments) { return time_of_impact(moving, candidates, arguments...); });
     });
 }
 
 int fastccd_mesh_find_contacts(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count, const fastccd_options* options,
                                fastccd_contact* contacts, size_t capacity, size_t* found, fastccd_summary* summary, fastccd_fault* fault)
 {
-    Request request{{}, summary, fault};
-    MovingMesh moving;
-    if (const int error = request.check(kind, pairs, count, options); error != FASTCCD_OK) return error;
-    if (!to_cpp(mesh, moving)) return FASTCCD_BAD_ARGUMENT;
-    return compact(request, contacts, capacity, found, [&](const Options& chosen, auto&&... outputs) {
-        return kind == FASTCCD_VERTEX_FACE ? find_contacts(moving, vertex_face_pairs(pairs, count), chosen, outputs...)
-                                           : find_contacts(moving, edge_edge_pairs(pairs, count), chosen, outputs...);
+    return of_mesh(mesh, kind, pairs, count, options, summary, fault, [&](const Request& request, const MovingMesh& moving, auto candidates) {
+        return compact(request, contacts, capacity, found,
+                       [&](auto&&... arguments) { return find_contacts(moving, candidates, arguments...); });
+    });
+}
+
+int fastccd_mesh_earliest_contact(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count, const fastccd_options* options,
+                                  fastccd_contact* contact, fastccd_summary* summary, fastccd_fault* fault)
+{
+    return of_mesh(mesh, kind, pairs, count, options, summary, fault, [&](const Request& request, const MovingMesh& moving, auto candidates) {
+        return earliest(request, contact,
+                        [&](auto&&... arguments) { return earliest_contact(moving, candidates, arguments...); });
     });
 }
 
@@ -275,20 +339,13 @@ int fastccd_mesh_collision_free_step(const fastccd_mesh* mesh, const int32_t* ve
                                      const int32_t* edge_edge, size_t edge_edge_count, const fastccd_options* options,
                                      fastccd_step* step, fastccd_fault* fault)
 {
-    if (step == nullptr || !has_size(step, first_step)) return FASTCCD_BAD_ARGUMENT;
-    CollisionFreeStep found;
-    const auto finish = [&](int error) {
-        write_struct({0, found.step, found.pair, static_cast<std::int32_t>(found.kind), 0}, *step);
-        return error;
-    };
-    if ((vertex_face == nullptr && vertex_face_count > 0) || (edge_edge == nullptr && edge_edge_count > 0)) return finish(FASTCCD_WRONG_SIZE);
-    Options chosen;
-    if (const int error = to_cpp(options, chosen); error != FASTCCD_OK) return finish(error);
-    MovingMesh moving;
-    if (!to_cpp(mesh, moving)) return finish(FASTCCD_BAD_ARGUMENT);
-    const Status status = collision_free_step(moving, vertex_face_pairs(vertex_face, vertex_face_count),
-                                              edge_edge_pairs(edge_edge, edge_edge_count), chosen, found);
-    return finish(report(status, fault));
+    return collision_free(vertex_face, vertex_face_count, edge_edge, edge_edge_count, options, step,
+                          [&](const Options& chosen, CollisionFreeStep& found) {
+                              MovingMesh moving;
+                              if (!to_cpp(mesh, moving)) return static_cast<int>(FASTCCD_BAD_ARGUMENT);
+                              return report(collision_free_step(moving, vertex_face_pairs(vertex_face, vertex_face_count),
+                                                                edge_edge_pairs(edge_edge, edge_edge_count), chosen, found), fault);
+                          });
 }
 
 }  // extern "C"

@@ -1,8 +1,12 @@
-/* The C interface, compiled as C99: answers, errors, and structs of other sizes than this version's. */
+/* The C interface, compiled as C99: answers, errors, threads, and structs of other sizes than this version's. */
+#define _GNU_SOURCE /* sched_getaffinity */
 #include <fastccd/fastccd.h>
 
+#include <dirent.h>
 #include <math.h>
+#include <sched.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static int failures = 0;
@@ -38,6 +42,48 @@ static fastccd_mesh make_mesh(void)
     return mesh;
 }
 
+static int count_threads(void)
+{
+    int count = 0;
+    struct dirent* entry;
+    DIR* const threads = opendir("/proc/self/task");
+    if (threads == NULL) return -1;
+    while ((entry = readdir(threads)) != NULL) count += entry->d_name[0] != '.';
+    closedir(threads);
+    return count;
+}
+
+/* With one thread asked for, no other is started; otherwise, as this would notice, there are more. To be called first. */
+static void test_threads(void)
+{
+    enum { many = 1 << 16 };
+    double* const pairs = calloc(many, 24 * sizeof(double));
+    double* const toi = malloc(many * sizeof(double));
+    fastccd_options options;
+    cpu_set_t processors;
+    const int several = sched_getaffinity(0, sizeof processors, &processors) == 0 && CPU_COUNT(&processors) > 1;
+    const int before = count_threads(); /* an emulator has some of its own */
+    int i, tries = 0;
+    EXPECT(pairs != NULL && toi != NULL);
+    if (failures > 0) return;
+    for (i = 0; i < many; ++i) {
+        memcpy(pairs + 24 * i, start, 12 * sizeof(double));
+        memcpy(pairs + 24 * i + 12, end, 12 * sizeof(double));
+    }
+    fastccd_options_init(&options, sizeof options);
+    options.threads = 1;
+    EXPECT(fastccd_pairs_time_of_impact(FASTCCD_VERTEX_FACE, pairs, many, &options, toi, NULL, NULL) == FASTCCD_OK);
+    EXPECT(near(toi[0], 0.5) && toi[many - 1] == toi[0] && count_threads() == before);
+    options.threads = 0;
+    do {
+        EXPECT(fastccd_pairs_time_of_impact(FASTCCD_VERTEX_FACE, pairs, many, &options, toi, NULL, NULL) == FASTCCD_OK);
+    } while (several && count_threads() == before && ++tries < 1000);
+    EXPECT(near(toi[0], 0.5) && toi[many - 1] == toi[0]);
+    EXPECT(!several || count_threads() > before);
+    free(pairs);
+    free(toi);
+}
+
 static void test_queries(void)
 {
     fastccd_options options;
@@ -52,7 +98,7 @@ static void test_queries(void)
     EXPECT(strcmp(fastccd_message(-1), "unknown error") == 0 && strcmp(fastccd_message(50), "unknown error") == 0);
     fastccd_options_init(&options, sizeof options);
     EXPECT(options.tolerance == 1e-9 && options.t_max == 1.0 && options.isa == FASTCCD_ISA_AUTOMATIC);
-    EXPECT(options.reference == 0 && options.exact == 0 && options.reserved == 0);
+    EXPECT(options.reference == 0 && options.exact == 0 && options.reserved == 0 && options.threads == 0 && options.reserved2 == 0);
 }
 
 static void test_single_pairs(void)
@@ -114,6 +160,52 @@ static void test_packed_pairs(void)
     EXPECT(fastccd_pairs_find_contacts(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, contacts, 2, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
 }
 
+static void test_first_of_packed_pairs(void)
+{
+    double faces_met[3][24], edges_met[1][24];
+    fastccd_contact first = {77, 77, 77, 77};
+    fastccd_summary summary;
+    fastccd_step step;
+    fastccd_fault fault = {77, 77};
+    fastccd_options options;
+    int i;
+    for (i = 0; i < 3; ++i) {
+        memcpy(faces_met[i], start, 12 * sizeof(double));
+        memcpy(faces_met[i] + 12, end, 12 * sizeof(double));
+    }
+    faces_met[0][2] += 0.25; /* later */
+    memcpy(edges_met[0], start + 6, 12 * sizeof(double));
+    memcpy(edges_met[0] + 12, end + 6, 12 * sizeof(double));
+    fastccd_options_init(&options, sizeof options);
+    for (options.threads = 0; options.threads < 3; ++options.threads) {
+        summary.size = sizeof summary;
+        EXPECT(fastccd_pairs_earliest_contact(FASTCCD_VERTEX_FACE, faces_met[0], 3, &options, &first, &summary) == FASTCCD_OK);
+        EXPECT(first.pair == 1 && near(first.toi, 0.5) && first.proven == 1 && first.at_start == 0);
+        EXPECT(summary.pairs == 3 && summary.earliest_pair == 1 && summary.earliest_toi == first.toi);
+        step.size = sizeof step;
+        EXPECT(fastccd_pairs_collision_free_step(faces_met[0], 3, edges_met[0], 1, &options, &step, &fault) == FASTCCD_OK);
+        EXPECT(near(step.step, 0.25) && step.kind == FASTCCD_EDGE_EDGE && step.pair == 0 && fault.pair == 77);
+        EXPECT(fastccd_pairs_collision_free_step(faces_met[0], 3, NULL, 0, &options, &step, NULL) == FASTCCD_OK);
+        EXPECT(step.step == first.toi && step.kind == FASTCCD_VERTEX_FACE && step.pair == 1);
+    }
+    options.threads = -1;
+    EXPECT(fastccd_pairs_earliest_contact(FASTCCD_VERTEX_FACE, faces_met[0], 3, &options, &first, NULL) == FASTCCD_BAD_ARGUMENT);
+    EXPECT(first.pair == 1);
+    EXPECT(fastccd_pairs_collision_free_step(faces_met[0], 3, NULL, 0, &options, &step, NULL) == FASTCCD_BAD_ARGUMENT && step.step == 0.0);
+
+    faces_met[2][5] = NAN; /* the first contact is among the others, but no step is certain */
+    EXPECT(fastccd_pairs_earliest_contact(FASTCCD_VERTEX_FACE, faces_met[0], 3, NULL, &first, NULL) == FASTCCD_OK && first.pair == 1);
+    EXPECT(fastccd_pairs_collision_free_step(faces_met[0], 3, edges_met[0], 1, NULL, &step, &fault) == FASTCCD_INVALID_PAIR);
+    EXPECT(step.step == 0.0 && step.kind == FASTCCD_VERTEX_FACE && fault.pair == 2);
+    EXPECT(fastccd_pairs_earliest_contact(FASTCCD_EDGE_EDGE, NULL, 0, NULL, &first, NULL) == FASTCCD_OK);
+    EXPECT(first.pair == (size_t)-1 && isinf(first.toi) && first.proven == 0);
+    EXPECT(fastccd_pairs_collision_free_step(NULL, 0, NULL, 0, NULL, &step, NULL) == FASTCCD_OK && step.step == 1.0 && step.pair == (size_t)-1);
+    EXPECT(fastccd_pairs_earliest_contact(FASTCCD_EDGE_EDGE, NULL, 1, NULL, &first, NULL) == FASTCCD_WRONG_SIZE);
+    EXPECT(fastccd_pairs_earliest_contact(FASTCCD_EDGE_EDGE, edges_met[0], 1, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+    EXPECT(fastccd_pairs_collision_free_step(NULL, 1, NULL, 0, NULL, &step, NULL) == FASTCCD_WRONG_SIZE && step.step == 0.0);
+    EXPECT(fastccd_pairs_collision_free_step(NULL, 0, NULL, 0, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+}
+
 static void test_meshes(void)
 {
     fastccd_mesh mesh = make_mesh();
@@ -129,6 +221,11 @@ static void test_meshes(void)
     EXPECT(near(toi, 0.5));
     EXPECT(fastccd_mesh_find_contacts(&mesh, FASTCCD_EDGE_EDGE, edge_edge, 1, NULL, &contact, 1, &found, NULL, NULL) == FASTCCD_OK);
     EXPECT(found == 1 && contact.pair == 0 && near(contact.toi, 0.25));
+    EXPECT(fastccd_mesh_earliest_contact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &contact, NULL, NULL) == FASTCCD_OK);
+    EXPECT(contact.pair == 0 && contact.toi == toi);
+    EXPECT(fastccd_mesh_earliest_contact(&mesh, FASTCCD_EDGE_EDGE, bad_pairs, 2, NULL, &contact, NULL, &fault) == FASTCCD_INDEX_OUT_OF_RANGE);
+    EXPECT(contact.pair == 0 && fault.pair == 1 && fault.index == 2);
+    EXPECT(fastccd_mesh_earliest_contact(&mesh, FASTCCD_EDGE_EDGE, edge_edge, 1, NULL, NULL, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
 
     step.size = sizeof step;
     EXPECT(fastccd_mesh_collision_free_step(&mesh, vertex_face, 1, edge_edge, 1, NULL, &step, NULL) == FASTCCD_OK);
@@ -160,6 +257,7 @@ static void test_layout(void)
     EXPECT(offsetof(fastccd_options, tolerance) == 8 && offsetof(fastccd_options, t_max) == 16 && offsetof(fastccd_options, isa) == 24);
     EXPECT(offsetof(fastccd_options, reference) == 28 && offsetof(fastccd_options, exact) == 32 && offsetof(fastccd_options, reserved) == 36);
     EXPECT(offsetof(fastccd_options, minimum_separation) == 40 && offsetof(fastccd_options, distance_tolerance) == 48);
+    EXPECT(sizeof(fastccd_options) == 64 && offsetof(fastccd_options, threads) == 56);
     EXPECT(offsetof(fastccd_mesh, vertex_count) == 8 && offsetof(fastccd_mesh, start) == 16 && offsetof(fastccd_mesh, end) == 24);
     EXPECT(offsetof(fastccd_mesh, face_count) == 32 && offsetof(fastccd_mesh, faces) == 40);
     EXPECT(offsetof(fastccd_mesh, edge_count) == 48 && offsetof(fastccd_mesh, edges) == 56);
@@ -238,9 +336,11 @@ static void test_other_sizes(void)
 
 int main(void)
 {
+    test_threads();
     test_queries();
     test_single_pairs();
     test_packed_pairs();
+    test_first_of_packed_pairs();
     test_meshes();
     test_layout();
     test_minimum_separation();

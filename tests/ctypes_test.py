@@ -1,5 +1,6 @@
 """The C interface from Python's ctypes, on memory of numpy. Argument: the shared library."""
 import ctypes
+import os
 import sys
 from ctypes import POINTER, Structure, byref, c_double, c_int, c_int32, c_int64, c_size_t, c_void_p, sizeof
 
@@ -8,7 +9,8 @@ import numpy as np
 
 class Options(Structure):
     _fields_ = [("size", c_size_t), ("tolerance", c_double), ("t_max", c_double), ("isa", c_int32),
-                ("reference", c_int32), ("exact", c_int32), ("reserved", c_int32)]
+                ("reference", c_int32), ("exact", c_int32), ("reserved", c_int32),
+                ("minimum_separation", c_double), ("distance_tolerance", c_double), ("threads", c_int32), ("reserved2", c_int32)]
 
 
 class Mesh(Structure):
@@ -24,7 +26,7 @@ class Fault(Structure):
     _fields_ = [("pair", c_size_t), ("index", c_int64)]
 
 
-contact = np.dtype([("pair", np.uintp), ("toi", np.float64), ("proven", np.int32), ("reserved", np.int32)])
+contact = np.dtype([("pair", np.uintp), ("toi", np.float64), ("proven", np.int32), ("at_start", np.int32)])
 VERTEX_FACE, EDGE_EDGE = 0, 1
 INDEX_OUT_OF_RANGE = 7
 
@@ -33,6 +35,7 @@ library.fastccd_version.restype = library.fastccd_message.restype = ctypes.c_cha
 library.fastccd_options_init.argtypes = [POINTER(Options), c_size_t]
 library.fastccd_options_init.restype = None
 library.fastccd_pairs_time_of_impact.argtypes = [c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p, c_void_p]
+library.fastccd_pairs_earliest_contact.argtypes = [c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_void_p]
 library.fastccd_mesh_find_contacts.argtypes = [POINTER(Mesh), c_int, c_void_p, c_size_t, c_void_p, c_void_p, c_size_t,
                                                POINTER(c_size_t), c_void_p, c_void_p]
 library.fastccd_mesh_collision_free_step.argtypes = [POINTER(Mesh), c_void_p, c_size_t, c_void_p, c_size_t, c_void_p,
@@ -63,6 +66,11 @@ hit = height < 2
 assert (toi[hit] <= height[hit] / 2).all() and (toi[hit] >= height[hit] / 2 - 1e-6).all()
 assert np.isinf(toi[~hit]).all()
 assert (roots[hit] == 1).all() and (roots[~hit] == 0).all()
+
+# The first contact; its first pair is the lowest vertex. With `threads`, a process may be kept from having more than it wants.
+first = np.empty(1, contact)
+check(library.fastccd_pairs_earliest_contact(VERTEX_FACE, pairs.ctypes.data, n, byref(options), first.ctypes.data, None))
+assert first["pair"] == 0 and first["toi"] == toi.min() and first["proven"] == 1
 
 # The same as a mesh (V, 3) with faces (F, 3), and candidates (n, 2).
 start, end = (np.ascontiguousarray(np.vstack([pairs[:, 4 * t], pairs[0, 4 * t + 1:4 * t + 4]])) for t in (0, 1))

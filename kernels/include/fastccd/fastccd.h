@@ -38,7 +38,7 @@ enum fastccd_error {
     FASTCCD_BAD_MINIMUM_SEPARATION = 10, /* minimum_separation is negative, infinite or not a number */
     FASTCCD_BAD_DISTANCE_TOLERANCE = 11, /* distance_tolerance is negative, infinite or not a number */
     FASTCCD_EXACT_SEPARATION = 12,       /* `exact` together with a minimum separation */
-    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, or a struct whose size is not set */
+    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, threads < 0, or a struct whose size is not set */
 };
 
 enum fastccd_kind {
@@ -66,6 +66,8 @@ typedef struct fastccd_options {
     int32_t reserved;  /* 0 */
     double minimum_separation; /* d > 0: contact is a distance of at most d: 0 */
     double distance_tolerance; /* then: at most (1 + distance_tolerance) d counts as contact: 1e-6 */
+    int32_t threads;   /* at most so many work for a call, the caller's included; 0: no limit */
+    int32_t reserved2; /* 0 */
 } fastccd_options;
 
 /* A mesh that moves linearly over the step. */
@@ -146,6 +148,16 @@ FASTCCD_API int fastccd_pairs_time_of_impact(int kind, const double* pairs, size
  * summary->invalid; fastccd_pairs_time_of_impact() tells which they are. */
 FASTCCD_API int fastccd_pairs_find_contacts(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                             fastccd_contact* contacts, size_t capacity, size_t* found, fastccd_summary* summary);
+/* The first contact of all: smallest toi, ties to the smaller index; pair SIZE_MAX and toi INFINITY if no pair touches. Faster than
+ * looking for it in all of them, as pairs that cannot be the first are dropped early. So pairs with a NaN or an infinity are counted
+ * in summary->invalid only as far as they were looked at, and contacts are not counted. */
+FASTCCD_API int fastccd_pairs_earliest_contact(int kind, const double* pairs, size_t count, const fastccd_options* options,
+                                               fastccd_contact* contact, fastccd_summary* summary);
+/* The largest step that all candidates together allow: the smallest toi, ties to vertex-face, then to the smaller index.
+ * A pair with a NaN or an infinity allows none: FASTCCD_INVALID_PAIR. `fault`: or NULL. */
+FASTCCD_API int fastccd_pairs_collision_free_step(const double* vertex_face, size_t vertex_face_count, const double* edge_edge,
+                                                  size_t edge_edge_count, const fastccd_options* options, fastccd_step* step,
+                                                  fastccd_fault* fault);
 
 /* Pairs of a mesh: `pairs` is count x 2 indices. Indices are checked before any work. Each call copies the positions,
  * 64 bytes a vertex. `fault`: or NULL. */
@@ -155,8 +167,9 @@ FASTCCD_API int fastccd_mesh_time_of_impact(const fastccd_mesh* mesh, int kind, 
 FASTCCD_API int fastccd_mesh_find_contacts(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count,
                                            const fastccd_options* options, fastccd_contact* contacts, size_t capacity,
                                            size_t* found, fastccd_summary* summary, fastccd_fault* fault);
-/* The largest step that all candidates together allow: the smallest toi, ties to vertex-face, then to the smaller index.
- * A pair with a NaN or an infinity allows none: FASTCCD_INVALID_PAIR. */
+FASTCCD_API int fastccd_mesh_earliest_contact(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count,
+                                              const fastccd_options* options, fastccd_contact* contact, fastccd_summary* summary,
+                                              fastccd_fault* fault);
 FASTCCD_API int fastccd_mesh_collision_free_step(const fastccd_mesh* mesh, const int32_t* vertex_face, size_t vertex_face_count,
                                                  const int32_t* edge_edge, size_t edge_edge_count,
                                                  const fastccd_options* options, fastccd_step* step, fastccd_fault* fault);

@@ -15,3 +15,18 @@ auto isolate(const Call& call)
 }
 
 }  // namespace tbb::this_task_arena
+
+namespace tbb {
+
+/// Has as many threads as everything here.
+struct task_arena {
+    explicit task_arena(int) {}
+
+    template <class Call>
+    void execute(const Call& call)
+    {
+        call();
+    }
+};
+
+}  // namespace tbb
