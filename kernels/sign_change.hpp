@@ -66,10 +66,14 @@ FASTCCD_INLINE PowerCubic<L> power_basis(const Cubic<L>& f)
     return {f.c0, three * g.d0, three * g.h, g.A};
 }
 
-/// Of [low, high], a part of [0, 1].
+/// Where f is smallest or largest within [0, 1], in order; the same end of it twice if f is monotone there.
 template <class L>
-FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, const ErrorBounds& bounds, double leaf_width,
-                                                 L low, L high)
+struct Extrema {
+    L first, second;
+};
+
+template <class L>
+FASTCCD_INLINE Extrema<L> extrema(const Cubic<L>& f)
 {
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     // Stable roots of d0 + 2 h s + A s^2: q = -(h + sign(h) sqrt D), x1 = q / A, x2 = d0 / q.
@@ -82,21 +86,31 @@ FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, co
     const L x1 = max(min(q / A, one), zero);
     const L x2 = max(min(d0 / q, one), zero);
     const LaneMask<L> none = less(D, zero);  // monotone throughout: both cuts at 0
-    const L first = select<L>(none, zero, min(x1, x2));
-    const L second = select<L>(none, zero, max(x1, x2));
+    return {select<L>(none, zero, min(x1, x2)), select<L>(none, zero, max(x1, x2))};
+}
 
+/// Of [low, high], a part of [0, 1].
+template <class L>
+FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const PowerCubic<L>& f, const Extrema<L>& cuts, L threshold, L low, L high)
+{
     MonotonePieces<L> pieces;
-    pieces.f = power_basis(f);
+    pieces.f = f;
     pieces.time[0] = low;
-    pieces.time[1] = max(min(first, high), low);
-    pieces.time[2] = max(min(second, high), low);
+    pieces.time[1] = max(min(cuts.first, high), low);
+    pieces.time[2] = max(min(cuts.second, high), low);
     pieces.time[3] = high;
-    for (int i = 0; i < 4; ++i) pieces.value[i] = evaluate(pieces.f, pieces.time[i]);
-    pieces.threshold = sign_threshold(f, volume, bounds, leaf_width);
+    for (int i = 0; i < 4; ++i) pieces.value[i] = evaluate(f, pieces.time[i]);
+    pieces.threshold = threshold;
     const L closest = min(min(abs(pieces.value[0]), abs(pieces.value[1])),
                           min(abs(pieces.value[2]), abs(pieces.value[3])));
-    pieces.certain = less(pieces.threshold, closest);
+    pieces.certain = less(threshold, closest);
     return pieces;
+}
+
+template <class L>
+FASTCCD_INLINE MonotonePieces<L> monotone_pieces(const Cubic<L>& f, L volume, const ErrorBounds& bounds, double leaf_width, L low, L high)
+{
+    return monotone_pieces(power_basis(f), extrema(f), sign_threshold(f, volume, bounds, leaf_width), low, high);
 }
 
 /// True where the signs of a and b differ (neither is zero).

@@ -134,6 +134,13 @@ FASTCCD_INLINE void read(const Queue& queue, unsigned first, Record<L>& record)
     });
 }
 
+/// Of those lanes, `pair` alone.
+template <class L>
+FASTCCD_INLINE L read_pair(const PairQueue& queue, unsigned first)
+{
+    return Lane<L>::load(&queue.data[PairQueue::fields - 1][first]);
+}
+
 template <std::size_t size, class L>
 FASTCCD_INLINE void store_four(double (&rows)[4][size], unsigned i, L a, L b, L c, L d)
 {

@@ -52,10 +52,12 @@ private:
     }
 
     /// The pieces in which the cubic changes sign, and a few steps towards the root in the first of them. Every step is done for all
-    /// batches before the next one, so that divisions and roots of many batches are under way at once.
+    /// batches before the next one, so that divisions and roots of many batches are under way at once: processors look ahead by a few
+    /// hundred instructions, and a step that ends with a division is not waited for while the next batch's begins.
     void find_roots(bool all)
     {
         const unsigned size = scratch.candidates.size, end = all ? size : size / width * width;
+        for (unsigned i = 0; i < end; i += width) find_extrema(i);
         for (unsigned i = 0; i < end; i += width) find_pieces(i, lanes_in_use<L>(size - i));
         for (int step = 0; step < quick_steps; ++step)
             for (unsigned i = 0; i < end; i += width) approach_root(i);
@@ -65,19 +67,38 @@ private:
 
     FASTCCD_INLINE static L middle(L low, L high) { return (low + high) * broadcast<L>(0.5); }
 
-    /// In the window alone: no leaf straddles the middle of the step, where it may end, and the other half has a certificate.
-    FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
+    /// Leaves them where find_pieces() puts the piece.
+    FASTCCD_INLINE void find_extrema(unsigned i)
     {
         RootSearch& search = scratch.search;
         PairRecord<L> record;
         read(scratch.candidates, i, record);
         compute_pair_again(record);
-        const Window<L> window = window_of(record.pair);
-        const MonotonePieces<L> pieces = monotone_pieces(bernstein(record.cubic), record.scale.volume, parameters.bounds,
-                                                         parameters.leaf_width, window.low, window.high);
+        const Cubic<L> f = bernstein(record.cubic);
+        const Extrema<L> cuts = extrema(f);
+        store(search.scale, i, record.scale);
+        store(search.f, i, power_basis(f));
+        Lane<L>::store(&search.threshold[i], sign_threshold(f, record.scale.volume, parameters.bounds, parameters.leaf_width));
+        Lane<L>::store(&search.low[i], cuts.first);
+        Lane<L>::store(&search.high[i], cuts.second);
+    }
+
+    /// In the window alone: no leaf straddles the middle of the step, where it may end, and the other half has a certificate.
+    FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
+    {
+        RootSearch& search = scratch.search;
+        const Window<L> window = window_of(read_pair<L>(scratch.candidates, i));
+        const Extrema<L> cuts{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
+        const MonotonePieces<L> pieces = monotone_pieces(load<PowerCubic, L>(search.f, i), cuts, Lane<L>::load(&search.threshold[i]),
+                                                         window.low, window.high);
         const unsigned certain =
-            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), record.scale.volume));
-        if (certain != lanes) look_at_quarters(record, lanes & ~certain);
+            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), Lane<L>::load(&search.scale[3][i])));
+        if (certain != lanes) {
+            PairRecord<L> record;
+            read(scratch.candidates, i, record);
+            record.scale = load<Scales, L>(search.scale, i);
+            look_at_quarters(record, lanes & ~certain);
+        }
 
         const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
         const LaneMask<L> in_second = opposite_signs(pieces.value[1], pieces.value[2]);
@@ -88,9 +109,6 @@ private:
         search.pieces[1][i / width] = certain & Lane<L>::bits(first_two | (in_third & (in_first | in_second)));
         search.pieces[2][i / width] = certain & Lane<L>::bits(first_two & in_third);
 
-        store(search.scale, i, record.scale);
-        store(search.f, i, pieces.f);
-        Lane<L>::store(&search.threshold[i], pieces.threshold);
         Lane<L>::store(&search.end[i], window.high);
         const L low = select<L>(in_first, pieces.time[0], select<L>(in_second, pieces.time[1], pieces.time[2]));
         const L high = select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3]));
@@ -182,11 +200,12 @@ private:
         root.high = Lane<L>::load(&scratch.search.high[i]);
         root.guess = Lane<L>::load(&scratch.search.guess[i]);
 
-        const Neighbourhood around = look_around(root);
+        // The leaf first: few operations that wait for one another, done by the time the many of the bracket are.
         const Leaf leaf = leaf_at(root.guess);
         const L at_left = evaluate(root.f, leaf.left), at_right = evaluate(root.f, leaf.right);
         const LaneMask<L> in_leaf = leaf.inner & less_equal(root.low, leaf.left) & less_equal(leaf.right, root.high) &
                                     less(root.threshold, min(abs(at_left), abs(at_right))) & opposite_signs(at_left, at_right);
+        const Neighbourhood around = look_around(root);
         const LaneMask<L> is_contact = in_leaf & around.present, decided = is_contact | around.absent;
         const unsigned contact = lanes & Lane<L>::bits(is_contact), undecided = lanes & ~Lane<L>::bits(decided);
         record_contacts(root.pair, leaf.left, contact);
