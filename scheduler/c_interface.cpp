@@ -25,7 +25,9 @@ static_assert(FASTCCD_BAD_TOLERANCE == static_cast<int>(Error::bad_tolerance) &&
               FASTCCD_INVALID_PAIR == static_cast<int>(Error::invalid_pair) && FASTCCD_OUT_OF_MEMORY == static_cast<int>(Error::out_of_memory) &&
               FASTCCD_BAD_MINIMUM_SEPARATION == static_cast<int>(Error::bad_minimum_separation) &&
               FASTCCD_BAD_DISTANCE_TOLERANCE == static_cast<int>(Error::bad_distance_tolerance) &&
-              FASTCCD_EXACT_SEPARATION == static_cast<int>(Error::exact_separation));
+              FASTCCD_EXACT_SEPARATION == static_cast<int>(Error::exact_separation) &&
+              FASTCCD_BAD_FACE_INDEX == static_cast<int>(Error::bad_face_index) &&
+              FASTCCD_BAD_EDGE_INDEX == static_cast<int>(Error::bad_edge_index));
 static_assert(FASTCCD_VERTEX_FACE == static_cast<int>(PairKind::vertex_face) && FASTCCD_EDGE_EDGE == static_cast<int>(PairKind::edge_edge));
 static_assert(FASTCCD_ISA_AUTOMATIC == static_cast<int>(Isa::automatic) && FASTCCD_ISA_SCALAR == static_cast<int>(Isa::scalar) &&
               FASTCCD_ISA_SSE2 == static_cast<int>(Isa::sse2) && FASTCCD_ISA_AVX2 == static_cast<int>(Isa::avx2) &&
@@ -70,8 +72,7 @@ int to_cpp(const fastccd_options* given, CallOptions& options)
 
 int report(const Status& status, fastccd_fault* fault)
 {
-    if (fault != nullptr && (status.error == Error::index_out_of_range || status.error == Error::invalid_pair))
-        *fault = {status.pair, status.index};
+    if (fault != nullptr && status.pair != Status{}.pair) *fault = {status.pair, status.index};
     return static_cast<int>(status.error);
 }
 
@@ -245,7 +246,7 @@ const char* fastccd_version(void) { return FASTCCD_VERSION; }
 const char* fastccd_message(int error)
 {
     if (error == FASTCCD_BAD_ARGUMENT) return "a pointer is null, a kind is unknown, the number of threads is negative, or the size of a struct is not set";
-    if (error < FASTCCD_OK || error > FASTCCD_EXACT_SEPARATION) return "unknown error";
+    if (error < FASTCCD_OK || error > FASTCCD_BAD_EDGE_INDEX) return "unknown error";
     return message(static_cast<Error>(error));
 }
 

@@ -25,6 +25,7 @@ inline CheckedSource indexed(const MovingMesh& mesh, const std::int32_t* pairs, 
                              std::size_t first_size)
 {
     if (!mesh.status().ok()) return {{}, mesh.status(), nullptr};
+    if (pairs == nullptr && count > 0) return {{}, {Error::wrong_size}, nullptr};
     return {{nullptr, {mesh.records(), pairs, primitives.data, primitives.row_stride, primitives.column_stride,
                        mesh.vertex_count(), primitives.size, {}}, count},
             check_pairs(pairs, count, first_size, primitives.size), mesh.boxes()};
@@ -35,12 +36,12 @@ static_assert(sizeof(VertexFace) == 2 * sizeof(std::int32_t) && sizeof(EdgeEdge)
 
 inline CheckedSource indexed(const MovingMesh& mesh, std::span<const VertexFace> pairs)
 {
-    return indexed(mesh, pairs.empty() ? nullptr : &pairs[0].vertex, pairs.size(), mesh.faces(), mesh.vertex_count());
+    return indexed(mesh, pairs.data() == nullptr ? nullptr : &pairs.data()->vertex, pairs.size(), mesh.faces(), mesh.vertex_count());
 }
 
 inline CheckedSource indexed(const MovingMesh& mesh, std::span<const EdgeEdge> pairs)
 {
-    return indexed(mesh, pairs.empty() ? nullptr : &pairs[0].edge_a, pairs.size(), mesh.edges(), mesh.edges().size);
+    return indexed(mesh, pairs.data() == nullptr ? nullptr : &pairs.data()->edge_a, pairs.size(), mesh.edges(), mesh.edges().size);
 }
 
 inline Status prepare(PairKind kind, const CheckedSource& checked, const Options& options, bool count_roots, Job& job)

@@ -33,7 +33,8 @@ Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, 
     Job job = no_job(kind);
     if (const Status status = prepare(kind, pairs, options, !roots.empty(), job); !status.ok()) return status;
     const std::size_t size = pairs.source.size;
-    if (toi.size() != size || (!roots.empty() && roots.size() != size)) return {Error::wrong_size};
+    if (toi.size() != size || (size > 0 && toi.data() == nullptr)) return {Error::wrong_size};
+    if (!roots.empty() && (roots.size() != size || roots.data() == nullptr)) return {Error::wrong_size};
 
     Workers<TileWorker> workers;
     const Summary totals =
@@ -199,6 +200,8 @@ const char* message(Error error) noexcept
         case Error::out_of_memory: return "out of memory, or the system refused a thread";
         case Error::bad_minimum_separation: return "the minimum separation must be a finite number, at least 0";
         case Error::bad_distance_tolerance: return "the distance tolerance must be a finite number, at least 0";
+        case Error::bad_face_index: return "a face of the mesh refers to a vertex that is not there";
+        case Error::bad_edge_index: return "an edge of the mesh refers to a vertex that is not there";
         case Error::exact_separation: return "there is no exact verdict with a minimum separation";
     }
     return "unknown error";

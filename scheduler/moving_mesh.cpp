@@ -13,8 +13,8 @@ namespace fastccd {
 
 namespace {
 
-/// First row of `rows` with a vertex that is not below `vertices`.
-Status check_rows(const IndexView& rows, int columns, std::size_t vertices)
+/// First row of `rows` with a vertex that is not below `vertices`, as the error given.
+Status check_rows(const IndexView& rows, int columns, std::size_t vertices, Error error)
 {
     if (rows.size > 0 && rows.data == nullptr) return {Error::wrong_size};
     // As in a view whose strides were forgotten: each face would be one vertex.
@@ -22,7 +22,7 @@ Status check_rows(const IndexView& rows, int columns, std::size_t vertices)
     for (std::size_t row = 0; row < rows.size; ++row)
         for (int column = 0; column < columns; ++column) {
             const std::int32_t vertex = rows.data[static_cast<std::ptrdiff_t>(row) * rows.row_stride + column * rows.column_stride];
-            if (!in_range(vertex, vertices)) return {Error::index_out_of_range, row, vertex};
+            if (!in_range(vertex, vertices)) return {error, row, vertex};
         }
     return {};
 }
@@ -50,8 +50,8 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     : vertex_count_{start.size()}, faces_{faces}, edges_{edges}
 {
     if (start.size() != end.size() || (start.size() > 0 && !(start.has_data() && end.has_data()))) return;
-    status_ = check_rows(faces, 3, vertex_count_);
-    if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_);
+    status_ = check_rows(faces, 3, vertex_count_, Error::bad_face_index);
+    if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_, Error::bad_edge_index);
     if (!status_.ok() || vertex_count_ == 0) return;
 
     if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / vertex_record_size) records_ = allocate_aligned(vertex_count_ * vertex_record_size);

@@ -55,6 +55,9 @@ TEST(Api, RefusesWrongSizes)
     EXPECT_EQ(time_of_impact(PairKind::vertex_face, interleaved(pairs), {}, toi, nullptr, roots).error, Error::wrong_size);
     EXPECT_EQ(time_of_impact(PairKind::vertex_face, PairView::interleaved(static_cast<const double*>(nullptr), 5), {}, toi).error,
               Error::wrong_size);
+    EXPECT_EQ(time_of_impact(PairKind::vertex_face, interleaved(pairs), {}, {static_cast<double*>(nullptr), 5}).error, Error::wrong_size);
+    EXPECT_EQ(time_of_impact(PairKind::vertex_face, interleaved(pairs), {}, toi, nullptr, {static_cast<std::uint8_t*>(nullptr), 5}).error,
+              Error::wrong_size);
     for (const std::size_t missing : {0u, 5u, 23u}) {
         std::array<const double*, pair_coordinates> columns{};
         columns.fill(pairs[0][0].data());

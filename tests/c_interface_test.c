@@ -211,6 +211,7 @@ static void test_meshes(void)
     fastccd_mesh mesh = make_mesh();
     const int32_t bad_pairs[] = {0, 1, 0, 2}; /* there are edges 0 and 1 */
     const int32_t bad_faces[] = {1, 2, 6};
+    const int32_t bad_edges[] = {2, 3, 4, -3};
     double toi = 7.0;
     double moved[18];
     fastccd_contact contact;
@@ -242,8 +243,13 @@ static void test_meshes(void)
     EXPECT(step.step == 0.0 && step.kind == FASTCCD_EDGE_EDGE && fault.pair == 0);
     mesh = make_mesh();
     mesh.faces = bad_faces;
-    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, &fault) == FASTCCD_INDEX_OUT_OF_RANGE);
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, &fault) == FASTCCD_BAD_FACE_INDEX);
     EXPECT(fault.pair == 0 && fault.index == 6);
+    EXPECT(strstr(fastccd_message(FASTCCD_BAD_FACE_INDEX), "face") != NULL && strstr(fastccd_message(FASTCCD_BAD_EDGE_INDEX), "edge") != NULL);
+    mesh = make_mesh();
+    mesh.edges = bad_edges;
+    EXPECT(fastccd_mesh_collision_free_step(&mesh, vertex_face, 1, edge_edge, 1, NULL, &step, &fault) == FASTCCD_BAD_EDGE_INDEX);
+    EXPECT(step.step == 0.0 && fault.pair == 1 && fault.index == -3);
     mesh = make_mesh();
     mesh.start = NULL;
     EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, vertex_face, 1, NULL, &toi, NULL, NULL, NULL) == FASTCCD_WRONG_SIZE);

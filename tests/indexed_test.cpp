@@ -308,9 +308,13 @@ TEST(Indexed, MeshesThatAreNotMeshes)
     EXPECT_TRUE((MovingMesh{positions(5), positions(5), {}, {}}).status().ok());
     std::vector<std::int32_t> faces = {0, 1, 2, 0, 5, 1};
     const Status status = MovingMesh{positions(5), positions(5), IndexView::rows(faces.data(), 2, 3), {}}.status();
-    EXPECT_EQ(status.error, Error::index_out_of_range);
+    EXPECT_EQ(status.error, Error::bad_face_index);
     EXPECT_EQ(status.pair, 1u);
     EXPECT_EQ(status.index, 5);
+    const Status of_edges = MovingMesh{positions(5), positions(5), IndexView::rows(faces.data(), 1, 3), IndexView::rows(faces.data(), 3, 2)}.status();
+    EXPECT_EQ(of_edges.error, Error::bad_edge_index);
+    EXPECT_EQ(of_edges.pair, 2u);
+    EXPECT_EQ(of_edges.index, 5);
     // Strides forgotten: all columns would be the first one.
     const IndexView without_strides{faces.data(), 1};
     EXPECT_EQ((MovingMesh{positions(5), positions(5), without_strides, {}}).status().error, Error::wrong_size);
@@ -319,10 +323,17 @@ TEST(Indexed, MeshesThatAreNotMeshes)
     EXPECT_TRUE((MovingMesh{positions(5), positions(5), IndexView::rows(faces.data(), 1, 3), {}}).status().ok());
     // More records than there can be.
     const double* const one = made.start.data();
-    const PositionView endless = PositionView::xyz(one, one, one, 0, std::size_t{1} << 61);
-    EXPECT_EQ((MovingMesh{endless, endless, {}, {}}).status().error, Error::out_of_memory);
+    for (const std::size_t n : {std::size_t{1} << 61, std::size_t{1} << 58, (std::size_t{1} << 58) - 1, std::size_t{1} << 57}) {
+        const PositionView endless = PositionView::xyz(one, one, one, 0, n);
+        EXPECT_EQ((MovingMesh{endless, endless, {}, {}}).status().error, Error::out_of_memory) << n;
+    }
     std::vector<double> toi;
     EXPECT_EQ(time_of_impact(MovingMesh{}, std::span<const VertexFace>{}, {}, toi).error, Error::wrong_size);
+    // Spans with a size and no data.
+    const MovingMesh mesh = made.mesh();
+    toi.resize(3);
+    EXPECT_EQ(time_of_impact(mesh, std::span<const VertexFace>{static_cast<const VertexFace*>(nullptr), 3}, {}, toi).error, Error::wrong_size);
+    EXPECT_EQ(time_of_impact(mesh, std::span<const EdgeEdge>{static_cast<const EdgeEdge*>(nullptr), 3}, {}, toi).error, Error::wrong_size);
 }
 
 TEST(Indexed, AMeshThatWasMovedIsNoMeshAnyMore)

@@ -56,6 +56,15 @@ for wanted in "9.0" "0.0.1" "0.1 COMPONENTS no_such_component"; do
     fail "find_package(fastccd $wanted) was accepted"
   fi
 done
+grep -q "there is no component 'no_such_component'" "$work/log" || fail "the component that is not there is not named: $(cat "$work/log")"
+
+# The static library is for projects with C++: in C alone nothing would link the standard library.
+printf 'cmake_minimum_required(VERSION 3.22)\nproject(c_alone LANGUAGES C)\nfind_package(fastccd 0.1 REQUIRED COMPONENTS static)\n' >"$work/refused/CMakeLists.txt"
+rm -rf "$work/refused/build"
+if env CC="$cc" cmake -S "$work/refused" -B "$work/refused/build" -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" 2>&1; then
+  fail "find_package with COMPONENTS static was accepted without C++"
+fi
+grep -q "enable_language(CXX)" "$work/log" || fail "what the static library needs is not said: $(cat "$work/log")"
 
 # pkg-config: the shared library, then the static one with what it needs.
 # Alone: whoever has no development files of oneTBB and GMP can link the shared library.

@@ -32,12 +32,14 @@ enum fastccd_error {
     FASTCCD_EXACT_UNAVAILABLE = 4,   /* `exact` in a build without GMP */
     FASTCCD_ISA_UNAVAILABLE = 5,     /* the instruction set is not in this build or not on this machine */
     FASTCCD_BAD_ISA_ENVIRONMENT = 6, /* FASTCCD_ISA names no instruction set, or one that is unavailable */
-    FASTCCD_INDEX_OUT_OF_RANGE = 7,  /* see fastccd_fault */
+    FASTCCD_INDEX_OUT_OF_RANGE = 7,  /* of a pair; see fastccd_fault */
     FASTCCD_INVALID_PAIR = 8,        /* a NaN or an infinity in a pair, in a call that cannot leave it out; see fastccd_fault */
     FASTCCD_OUT_OF_MEMORY = 9,       /* or the system refused a thread; what `toi` and `roots` hold is unspecified */
     FASTCCD_BAD_MINIMUM_SEPARATION = 10, /* minimum_separation is negative, infinite or not a number */
     FASTCCD_BAD_DISTANCE_TOLERANCE = 11, /* distance_tolerance is negative, infinite or not a number */
     FASTCCD_EXACT_SEPARATION = 12,       /* `exact` together with a minimum separation */
+    FASTCCD_BAD_FACE_INDEX = 13,     /* a face of the mesh refers to a vertex that is not there; see fastccd_fault */
+    FASTCCD_BAD_EDGE_INDEX = 14,     /* an edge of the mesh does */
     FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, threads < 0, or a struct whose size is not set */
 };
 
@@ -109,9 +111,9 @@ typedef struct fastccd_step {
     int32_t reserved;
 } fastccd_step;
 
-/* What is at fault. Written on FASTCCD_INDEX_OUT_OF_RANGE and FASTCCD_INVALID_PAIR. */
+/* What is at fault. Written on FASTCCD_INDEX_OUT_OF_RANGE and FASTCCD_INVALID_PAIR, FASTCCD_BAD_FACE_INDEX and FASTCCD_BAD_EDGE_INDEX. */
 typedef struct fastccd_fault {
-    size_t pair;   /* the pair; for an index in `faces` or `edges`, the row */
+    size_t pair;   /* the pair; on the last two, the row of `faces` or `edges` */
     int64_t index; /* the index it holds */
 } fastccd_fault;
 

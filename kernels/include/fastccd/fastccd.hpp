@@ -38,8 +38,9 @@ namespace fastccd {
 /// pairs that are not certainly farther apart at t = 0, and no roots are counted.
 ///
 /// `roots`, when not empty, has one element per pair and gets the number of roots of the
-/// coplanarity cubic (paper, eq. 5 and 12) in [0, t_max] at which there is contact, a tangential
-/// root counting as 2; 0 for no contact and for contacts whose roots cannot be counted (the motion
+/// coplanarity cubic (paper, eq. 5 and 12) in [0, t_max] at which there is contact: 1 where the cubic changes sign, as at a
+/// simple or triple root, 2 at a tangential one, and 1 for whatever lies at t = 0 or t_max, where its sign is known on one side
+/// alone; 0 for no contact and for contacts whose roots cannot be counted (the motion
 /// stays coplanar to within rounding). This is the paper's odd / even distinction (Table 1).
 ///
 /// O(pairs); no allocation that grows with the number of pairs (but for Options::exact).

@@ -85,7 +85,7 @@ enum class Error : std::uint8_t {
     none,
     bad_tolerance,         ///< tolerance is not a positive finite number.
     bad_t_max,             ///< t_max is not in (0, 1].
-    wrong_size,            ///< an output span does not have one element per pair, or a view is malformed.
+    wrong_size,            ///< an output span does not have one element per pair, or a view is malformed or has no data.
     exact_unavailable,     ///< options.exact in a build without GMP.
     isa_unavailable,       ///< options.isa is not in this build or not on this machine.
     bad_isa_environment,   ///< FASTCCD_ISA names no instruction set, or one that is unavailable.
@@ -95,9 +95,11 @@ enum class Error : std::uint8_t {
     bad_minimum_separation,  ///< minimum_separation is negative, infinite or not a number.
     bad_distance_tolerance,  ///< distance_tolerance is negative, infinite or not a number.
     exact_separation,        ///< options.exact together with a minimum separation.
+    bad_face_index,          ///< face `pair` of a mesh refers to a vertex that is not there.
+    bad_edge_index,          ///< edge `pair` of a mesh refers to a vertex that is not there.
 };
 
-/// Outcome of a call: `error` and, where one pair is at fault, its number and the index it holds.
+/// Outcome of a call: `error` and, where one pair, face or edge is at fault, its number and the index it holds.
 struct Status {
     Error error = Error::none;
     std::size_t pair = std::numeric_limits<std::size_t>::max();
