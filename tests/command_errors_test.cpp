@@ -37,9 +37,10 @@ TEST(CommandErrors, BadFilesAreNamedAndLeaveNothing)
     for (const auto& [file, contents, message] :
          {BadFile{"short.npy", "\x93NUMPY", "truncated"}, BadFile{"other.npy", "hello", "not a .npy file"},
           BadFile{"seven.csv", seven.c_str(), "ends after row 7"},
+          BadFile{"marked.csv", "\xEF\xBB\xBF" "0,1,0,1,0,1\n", "ends after row 1"},
           BadFile{"words.csv", "a,b,c,d,e,f\n", "row 1, column 1 (x numerator): 'a' is not an integer"},
           BadFile{"third.csv", third.c_str(), "row 8, column 1 (x numerator): 1/3 is not a double"},
-          BadFile{"pairs.txt", "", "files of pairs end in .npy or .csv"}}) {
+          BadFile{"pairs.txt", "", "read from files whose names end in .npy or .csv"}}) {
         const ScratchDirectory directory;
         const std::string path = directory.write(file, contents);
         const std::string good = directory.write("good.csv", "");
@@ -115,7 +116,8 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         const char* message;
     } table[] = {
         {{}, "A subcommand is required"},
-        {{"fly"}, "fly"},
+        {{"fly", "--kind", "vf"}, "there is no subcommand 'fly'; see"},
+        {{"isa", "--kind", "vf"}, "not expected: --kind vf; see"},
         {{"random"}, "--kind is required"},
         {{"random", "--kind", "ve"}, "--kind: 've' is neither vf"},
         {{"random", "--kind", "vf", "--pairs", "-1"}, "--pairs"},
@@ -134,6 +136,7 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random", "--kind", "vf", "--min-separation", "1e-400"}, "--min-separation: '1e-400' is too small"},
         {{"run", "--kind", "vf", "--hits=", none}, "--hits=: the value is empty"},
         {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
+        {{"random", "--kind", "vf", "--save", directory / "pairs.csv"}, "--save: what is written is .npy"},
         {{"run", "--kind", "vf"}, "FILE is required"},
         {{"run", none}, "--kind is required"},
         {{"run", none, "--kind", "vf", "--range", "0:1"}, "--range: 0:1 ends beyond the last of 0 pairs"},
@@ -151,6 +154,17 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         EXPECT_NE(outcome.error.find(message), std::string::npos) << outcome.error;
         EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
     }
+}
+
+/// What is in a file's name reaches no terminal, and an error stays one line.
+TEST(CommandErrors, NamesWithControlCharactersAreSpelledOut)
+{
+    const Outcome file = run({"run", "--kind", "vf", "none\n\x1b[31m\x7f\xc3\xa9.csv"});
+    EXPECT_EQ(file.status, 1);
+    EXPECT_EQ(file.error.rfind("fastccd: none\\x0a\\x1b[31m\\x7f\xc3\xa9.csv: cannot be opened", 0), 0U) << file.error;
+    const Outcome word = run({"random", "--kind", "vf", "--\x1bx"});
+    EXPECT_EQ(word.status, 2);
+    EXPECT_EQ(word.error.rfind("fastccd: not expected: --\\x1bx; see", 0), 0U) << word.error;
 }
 
 TEST(CommandErrors, HelpAndVersion)
@@ -214,7 +228,7 @@ TEST(CommandErrors, OutputThatGoesNowhere)
 {
     const Arguments random{"random", "--kind", "vf", "--pairs", "1000"};
     const Outcome no_reader = run(random, {}, {.no_reader = true});
-    EXPECT_EQ(no_reader.status, 128 + SIGPIPE);
+    EXPECT_EQ(no_reader.status, 1000 + SIGPIPE);
     EXPECT_EQ(no_reader.error, "");
     for (const Arguments& arguments : {random, {"random", "--kind", "vf", "--quiet", "--hits", "-"}, {"isa"}, {"--help"}}) {
         const Outcome closed = run(arguments, {}, {.closed = true});
@@ -292,7 +306,7 @@ TEST(CommandErrors, SignalsEndItCleanly)
         const std::string hits = directory.write("hits.csv", "old");
         const Outcome outcome =
             run_on_terminal({"random", "--kind", "vf", "--pairs", "10000000000", "--hits", hits}, signal);
-        EXPECT_EQ(outcome.status, 128 + signal);
+        EXPECT_EQ(outcome.status, 1000 + signal);
         EXPECT_NE(outcome.out.find("\r\x1b[K["), std::string::npos) << outcome.out;
         EXPECT_NE(outcome.out.find(" M pairs/s  "), std::string::npos) << outcome.out;
         // The last thing on the terminal is an erased line.
@@ -318,7 +332,7 @@ TEST(CommandErrors, TheSameSignalTwiceAtOnceEndsItCleanly)
         ::kill(child, signal);
         int status = 0;
         ASSERT_EQ(::waitpid(child, &status, 0), child);
-        EXPECT_EQ(exit_status(status), 128 + signal);
+        EXPECT_EQ(exit_status(status), 1000 + signal);
         EXPECT_TRUE(directory.names().empty());
     }
 }
@@ -373,7 +387,7 @@ TEST(CommandErrors, HelpThatNobodyGetsIsAnError)
         const Outcome full = run({option}, {}, {.path = "/dev/full"});
         EXPECT_EQ(full.status, 1);
         EXPECT_EQ(full.error, "fastccd: standard output: cannot be written: No space left on device\n");
-        EXPECT_EQ(run({option}, {}, {.no_reader = true}).status, 128 + SIGPIPE);
+        EXPECT_EQ(run({option}, {}, {.no_reader = true}).status, 1000 + SIGPIPE);
     }
 }
 

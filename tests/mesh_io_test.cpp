@@ -215,7 +215,7 @@ TEST(MeshIo, ReadsEveryTypeAndSkipsWhatIsExtra)
     const Mesh mesh = parse_ply(
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty list uchar float "
         "extra\nproperty int y\n"
-        "property uchar red\nproperty int z\nelement edge 1\nproperty int a\nproperty int b\n"
+        "property uchar red\nproperty int z\nelement fold 1\nproperty int a\nproperty int b\n"
         "element face 1\nproperty list uchar uint vertex_indices\nproperty uchar flag\nend_header\n"
         "1 2 0.5 0.5 2 255 3\n4 0 5 0 6\n7 1 9 8 0 9\n0 1\n3 0 1 2 1\n");
     EXPECT_EQ(mesh.positions, (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
@@ -233,8 +233,40 @@ TEST(MeshIo, ReadsObj)
     EXPECT_EQ(bits(mesh.positions), bits({0.1, 1e23, -0.0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));
     EXPECT_EQ(mesh.faces, (std::vector<std::int32_t>{0, 1, 2, 0, 1, 2, 0, 1, 2, 0, 1,
                                                      2, 0, 1, 2, 3, 0, 1, 3, 2, 0}));
+    EXPECT_EQ(mesh.lines, (std::vector<Edge>{{0, 1}}));
     EXPECT_EQ(parse_mesh("v 0 0 0\nf 1 1 1\n", "UPPER.OBJ").faces,
               (std::vector<std::int32_t>{0, 0, 0}));
+}
+
+TEST(MeshIo, ObjStatementsGoOnAfterABackslash)
+{
+    const Mesh mesh = parse_obj("# not \\\nv 0 0 \\\r\n0\nv 1 0 0\nv 0 1 0\nf 1 \\\n2 \\\n\t3\nl 1 \\\n2");
+    EXPECT_EQ(mesh.positions, triangle_positions);
+    EXPECT_EQ(mesh.faces, triangle_faces);
+    EXPECT_EQ(mesh.lines, (std::vector<Edge>{{0, 1}}));
+    EXPECT_EQ(parse_obj("v 0 0 0\nv 1 0 0\nl 1 2 \\").lines, (std::vector<Edge>{{0, 1}})) << "nothing comes after the last one";
+}
+
+/// Of rods and hair, alone or beside faces.
+TEST(MeshIo, ReadsLines)
+{
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const Mesh mesh = parse_obj(vertices + "l 1 2/7 3 # a polyline\nl -1 -3\nl 4 4\nv 2 2 2\n");
+    EXPECT_TRUE(mesh.faces.empty());
+    EXPECT_EQ(mesh.lines, (std::vector<Edge>{{0, 1}, {1, 2}, {2, 0}, {3, 3}}));
+
+    const std::string header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    const std::string edges = "element edge 2\nproperty uint vertex2\nproperty uchar red\nproperty int vertex1\n";
+    EXPECT_EQ(parse_ply(header + edges + "end_header\n" + triangle_vertices + "0 255 1\n2 255 1\n").lines, (std::vector<Edge>{{1, 0}, {1, 2}}));
+    const Mesh both = parse_ply(header + edges + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + triangle_vertices +
+                                "0 255 1\n2 255 1\n3 0 1 2\n");
+    EXPECT_EQ(both.lines, (std::vector<Edge>{{1, 0}, {1, 2}}));
+    EXPECT_EQ(both.faces, triangle_faces);
+    Bytes binary(std::endian::big,
+                 "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\n"
+                 "element edge 1\nproperty ushort vertex1\nproperty int vertex2\nend_header\n");
+    binary.add(char{1}).add(char{2}).add(char{3}).add(std::uint16_t{0}).add(std::int32_t{0});
+    EXPECT_EQ(parse_ply(binary.text()).lines, (std::vector<Edge>{{0, 0}}));
 }
 
 /// Unknown statements are skipped, so that it would hide the first vertex.
@@ -262,6 +294,9 @@ TEST(MeshIo, NamesWhatIsWrongWithPly)
         std::string content = triangle;
         content.replace(content.find(from), from.size(), to);
         return content;
+    };
+    const auto with_edge = [&](const std::string& properties, const std::string& edge) {
+        return edited("end_header\n", "element edge 1\n" + properties + "end_header\n") + edge;
     };
     const std::string binary_header =
         "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float "
@@ -296,8 +331,8 @@ TEST(MeshIo, NamesWhatIsWrongWithPly)
          "face property 'vertex_indices' must be a list of integers"},
         {edited("vertex_indices", "corners"), "the header declares 0 face properties"},
         {edited("element face 1\n", "element faces 1\n"),
-         "the mesh is empty: the header declares no element 'face'"},
-        {ascii_ply("", "3 0 0 0\n"), "the mesh is empty: the header declares no element 'vertex'"},
+         "the mesh is empty: the header declares no elements 'face' or 'edge'"},
+        {ascii_ply("", "3 0 0 0\n"), "the mesh is empty: the header declares no elements 'vertex'"},
         {ascii_ply(triangle_vertices, ""), "the mesh is empty"},
         {edited("vertex 3", "vertex 4294967296"),
          "the header claims 4294967296 elements 'vertex'; at most"},
@@ -323,6 +358,12 @@ TEST(MeshIo, NamesWhatIsWrongWithPly)
          "line 13: face 0: it has 4 vertices; only triangles are read"},
         {edited("3 0 1 2", "2 0 1"), "line 13: face 0: it has 2 vertices"},
         {triangle + "3 0 1 2\n", "line 14: the file goes on after the last element"},
+        {edited("element face 1\n", "element edge 1\n"), "the header declares edge property 'vertex1' 0 times"},
+        {with_edge("property int vertex1\nproperty int vertex1\n", "0 1\n"), "the header declares edge property 'vertex1' 2 times"},
+        {with_edge("property int vertex1\nproperty float vertex2\n", "0 1\n"), "edge property 'vertex2' must be an integer"},
+        {with_edge("property int vertex1\nproperty list uchar int vertex2\n", "0 1 1\n"), "edge property 'vertex2' must be an integer"},
+        {with_edge("property int vertex1\nproperty int vertex2\n", "0 3\n"), "line 17: edge 0: it refers to vertex 3; the file has vertices 0 to 2"},
+        {with_edge("property int vertex1\nproperty int vertex2\n", "0 \n\n\n"), "line 17: edge 0: the line ends before its last value"},
         {binary_header + vertex + "\3" + vertex.substr(1),
          "face 0: the file ends within it, at byte"},
         {binary_header + vertex, "the header claims 1 elements 'face', more than"},
@@ -355,7 +396,12 @@ TEST(MeshIo, NamesWhatIsWrongWithObj)
         {vertices + "f 1 2\n", "line 4: the face has 2 vertices; only triangles"},
         {vertices + "f 1 2 3 1\n", "line 4: the face has 4 vertices; only triangles"},
         {vertices + "f\n", "line 4: the face has 0 vertices"},
-        {vertices + "f 1 2 0\n", "line 4: the face refers to vertex 0"},
+        {vertices + "f 1 2 0\n", "line 4: the face refers to vertex 0, but OBJ counts from 1"},
+        {vertices + "l 1\n", "line 4: the line has 1 vertices; it needs two at least"},
+        {vertices + "l 1 4\n", "line 4: the line refers to vertex 4, but the file has 3"},
+        {vertices + "l 1 2 -4\n", "line 4: the line refers to vertex -4, but 3 vertices come before it"},
+        {vertices + "l 1 b\n", "line 4: 'b' is not a vertex of a line"},
+        {vertices + "f 1 2 \\\n 9\n", "line 5: the face refers to vertex 9"},
         {vertices + "f 1 2 -4\n",
          "line 4: the face refers to vertex -4, but 3 vertices come before it"},
         {vertices + "f 1 2 4\n#\n", "line 4: the face refers to vertex 4, but the file has 3"},
@@ -392,7 +438,7 @@ TEST(MeshIo, SurvivesDamagedFiles)
             const Mesh mesh = parse_mesh(content, path);
             const auto n = static_cast<std::int32_t>(mesh.positions.size() / 3);
             for (const std::int32_t index : mesh.faces) EXPECT_TRUE(index >= 0 && index < n);
-            EXPECT_FALSE(mesh.faces.empty());
+            EXPECT_FALSE(mesh.faces.empty() && mesh.lines.empty());
         } catch (const InputError&) {
         }
     };
@@ -438,13 +484,15 @@ TEST_F(MeshFiles, WhatIsWrittenReadsBack)
         mesh.positions.push_back(std::bit_cast<double>(random()));  // NaNs, too
     for (int i = 0; i < 600; ++i) mesh.faces.push_back(static_cast<std::int32_t>(random() % 100));
     const fs::path path = directory_ / "mesh.ply";
-    for (int round = 0; round < 2; ++round) {  // the second time over the first
+    for (int round = 0; round < 2; ++round) {  // the second time over the first, and with lines
+        if (round == 1) mesh.lines = {{7, 5}, {99, 0}};
         OutputFile file(path);
         write_ply(file, mesh);
         file.commit();
         const Mesh back = read_mesh(path);
         EXPECT_EQ(bits(back.positions), bits(mesh.positions));
         EXPECT_EQ(back.faces, mesh.faces);
+        EXPECT_EQ(back.lines, mesh.lines);
     }
     EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1)
         << "nothing left behind";
@@ -472,7 +520,8 @@ TEST(UniqueEdges, EqualsASet)
 {
     EXPECT_TRUE(unique_edges({}).empty());
     EXPECT_TRUE(unique_edges({0, 0, 0}).empty()) << "no edge from a vertex to itself";
-    EXPECT_EQ(unique_edges({5, 5, 2}), (std::vector<std::array<std::int32_t, 2>>{{2, 5}}));
+    EXPECT_EQ(unique_edges({5, 5, 2}), (std::vector<Edge>{{2, 5}}));
+    EXPECT_EQ(unique_edges({5, 5, 2}, {{7, 7}, {5, 2}, {9, 0}}), (std::vector<Edge>{{0, 9}, {2, 5}}));
 
     std::mt19937 random(1);
     for (const std::int32_t largest :
@@ -480,13 +529,13 @@ TEST(UniqueEdges, EqualsASet)
         std::uniform_int_distribution<std::int32_t> vertex(0, largest);
         std::vector<std::int32_t> faces(3000);
         for (std::int32_t& index : faces) index = vertex(random);
-        std::set<std::array<std::int32_t, 2>> expected;
+        std::set<Edge> expected;
         for (std::size_t i = 0; i < faces.size(); ++i) {
             const std::int32_t a = faces[i];
             const std::int32_t b = faces[i % 3 == 2 ? i - 2 : i + 1];
             if (a != b) expected.insert({std::min(a, b), std::max(a, b)});
         }
-        const std::vector<std::array<std::int32_t, 2>> edges = unique_edges(faces);
+        const std::vector<Edge> edges = unique_edges(faces);
         EXPECT_TRUE(std::equal(edges.begin(), edges.end(), expected.begin(), expected.end()))
             << "largest " << largest;
     }

@@ -294,7 +294,7 @@ TEST(Report, InterruptedLeavesWhatWasThere)
         ::kill(child, SIGINT);
         int status = 0;
         ASSERT_EQ(::waitpid(child, &status, 0), child);
-        EXPECT_EQ(exit_status(status), 128 + SIGINT);
+        EXPECT_EQ(exit_status(status), 1000 + SIGINT);
     }
     EXPECT_EQ(directory.names(), std::vector<std::string>{"old"});
     EXPECT_EQ(files_in(directory / "old"), std::vector<std::string>{"report.html"});

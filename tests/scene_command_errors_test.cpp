@@ -32,6 +32,7 @@ TEST(SceneCommandErrors, BadFramesAreNamedAndLeaveNothing)
     } table[] = {
         {"vertices.obj", good + "v 1 1 1\n", "has 7 vertices, the first frame, "},
         {"faces.obj", good + "f 1 2 4\n", "has 3 faces, the first frame, "},
+        {"lines.obj", good + "l 1 2\n", "has 1 lines, the first frame, "},
         {"other.obj", good.substr(0, good.size() - 6) + "4 6 5\n", "has the vertices 3 5 4 in face 1, the first frame, "},
         {"polygon.obj", good + "f 1 2 4 3\n", "line 9"},
         {"outside.obj", good + "f 1 2 7\n", "line 9"},
@@ -197,13 +198,13 @@ TEST(SceneCommandErrors, SignalsLeaveNothing)
         // The files of the first two steps are there, under names of their own, when the signal comes.
         const int status = status_after_signal(
             scene(frames, {"--quiet", "--hits", directory / "hits.csv", "--save-pairs", pairs}), signal, pairs, 4);
-        EXPECT_EQ(status, 128 + signal);
+        EXPECT_EQ(status, 1000 + signal);
         EXPECT_EQ(directory.names(), std::vector<std::string>{"cloth"});
 
         const std::string cloth = directory / "more";
         EXPECT_EQ(status_after_signal({"make-scene", "cloth-ball", "--size", "100", "--frames", "100000", "--quiet", cloth},
                                       signal, cloth, 2),
-                  128 + signal);
+                  1000 + signal);
         EXPECT_FALSE(fs::exists(cloth));
     }
 }
@@ -217,7 +218,7 @@ TEST(MakeSceneCommand, LeavesFramesOfBeforeWhenASignalEndsIt)
     ASSERT_EQ(run(make).status, 0);
     const std::vector<std::string> before = files_in(cloth);
     ASSERT_EQ(before.size(), 200U);
-    EXPECT_EQ(status_after_signal(make, SIGINT, cloth, before.size() + 1), 128 + SIGINT);
+    EXPECT_EQ(status_after_signal(make, SIGINT, cloth, before.size() + 1), 1000 + SIGINT);
     EXPECT_EQ(files_in(cloth), before);
 }
 
@@ -257,10 +258,10 @@ TEST(SceneCommandErrors, SignalsEndItWhileAPipeWaits)
         ::waitpid(child, &status, 0);
         return exit_status(status);
     };
-    EXPECT_EQ(status_while_waiting(scene({pipe, frame})), 128 + SIGTERM) << "to be opened for reading";
-    EXPECT_EQ(status_while_waiting(scene({frame, frame}, {"--hits", pipe})), 128 + SIGTERM) << "to be opened for writing";
+    EXPECT_EQ(status_while_waiting(scene({pipe, frame})), 1000 + SIGTERM) << "to be opened for reading";
+    EXPECT_EQ(status_while_waiting(scene({frame, frame}, {"--hits", pipe})), 1000 + SIGTERM) << "to be opened for writing";
     const int both_ends = ::open(pipe.c_str(), O_RDWR);
-    EXPECT_EQ(status_while_waiting(scene({pipe, frame})), 128 + SIGTERM) << "to be read";
+    EXPECT_EQ(status_while_waiting(scene({pipe, frame})), 1000 + SIGTERM) << "to be read";
     ::close(both_ends);
 }
 

@@ -183,6 +183,30 @@ TEST(SceneCommand, HitsDoNotDependOnThreadsIsaOrPath)
     }
 }
 
+/// A rod falls through a face: its ends pass beside the face, and only its line meets the edges.
+TEST(SceneCommand, LinesAreEdgesToo)
+{
+    const ScratchDirectory directory;
+    const auto frame = [](const std::string& height, const std::string& rod) {
+        return "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nv -5 0 " + height + "\nv 5 0 " + height + "\nf 1 2 3\n" + rod;
+    };
+    const std::vector<std::string> frames{directory.write("a.obj", frame("1", "l 4 5\n")), directory.write("b.obj", frame("-1", "l 4 5\n"))};
+    const Json report = Json::parse(run(scene(frames, {"--json"})).out);
+    EXPECT_EQ(report["faces"], 1);
+    EXPECT_EQ(report["edges"], 4);
+    EXPECT_EQ(report["contacts"], 2);
+    const std::vector<std::string> without{directory.write("c.obj", frame("1", "")), directory.write("d.obj", frame("-1", ""))};
+    EXPECT_EQ(Json::parse(run(scene(without, {"--json"})).out)["contacts"], 0);
+    // Two rods, no face.
+    const auto rods = [](const std::string& height) { return "v -1 0 0\nv 1 0 0\nv 0 -1 " + height + "\nv 0 1 " + height + "\nl 1 2\nl 3 4\n"; };
+    const Json crossed = Json::parse(run(scene({directory.write("e.obj", rods("1")), directory.write("f.obj", rods("-3"))}, {"--json"})).out);
+    EXPECT_EQ(crossed["contacts"], 1);
+    // Of other vertices in the second frame.
+    const Outcome other = run(scene({frames[0], directory.write("g.obj", frame("-1", "l 4 3\n"))}));
+    EXPECT_EQ(other.status, 1);
+    EXPECT_NE(other.error.find("has the vertices 3 2 in line 0, the first frame, " + frames[0] + ", has 3 4; "), std::string::npos) << other.error;
+}
+
 TEST(SceneCommand, VerticesThatAreNotFiniteAreNamedAndTheOthersAnswered)
 {
     const ScratchDirectory directory;

@@ -73,6 +73,9 @@ void add_random_command(CLI::App& app)
             return OutputFile::is_standard_output(path) ? "the report goes to standard output; name a file" : "";
         })
         ->check(not_empty())
+        ->check([](const std::string& path) {
+            return path.ends_with(".csv") ? "what is written is .npy, and `run` would read it as its name says" : "";
+        })
         ->type_name("OUT.npy");
     add_pair_options(*command, options->common);
     command->callback([options] { random_command(*options); });

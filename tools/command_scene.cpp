@@ -21,7 +21,7 @@ void add_scene_command(CLI::App& app)
         ->add_option("FRAME", options->frames,
                      "Two or more meshes with the same faces, in order of time; from\n"
                      "each to the next is a step. PLY (ascii or binary) or .obj,\n"
-                     "triangles only")
+                     "triangles only; lines (OBJ: l, PLY: edge) are edges, too")
         ->required()
         ->type_name("");
     command

@@ -150,7 +150,7 @@ void add_report_options(CLI::App& command, CommonOptions& options, const std::st
         ->type_name("OUT.csv");
     command.add_flag("--proof", options.proof, "A last column proven in --hits: 1, or 0 for a contact that is\npossible to within rounding")
         ->needs("--hits");
-    command.add_flag("--json", options.json, "Report as one JSON object");
+    command.add_flag("--json", options.json, "Report as one JSON object (of invalid pairs it names the first ten)");
     command.add_flag("--quiet", options.quiet, "No progress bar, and no report unless --json");
 }
 

@@ -28,13 +28,18 @@ extern "C" void note_signal(int signal)
     const double seconds =
         static_cast<double>(now.tv_sec - first_signal.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - first_signal.tv_nsec);
     if (seconds < seconds_until_second) return;
-    struct sigaction action {};
-    action.sa_handler = SIG_DFL;
-    sigaction(signal, &action, nullptr);
-    raise(signal);  // delivered on return from here
+    fastccd::tools::end_by(signal);  // delivered on return from here
 }
 
 }  // namespace
+
+void end_by(int signal)
+{
+    struct sigaction action {};
+    action.sa_handler = SIG_DFL;
+    sigaction(signal, &action, nullptr);
+    raise(signal);
+}
 
 void install_signal_handlers()
 {

@@ -19,4 +19,8 @@ void install_signal_handlers();
 /// Throws Interrupted if a signal has come in. Call it at least every tenth of a second of work.
 void check_interrupt();
 
+/// Ends the process by the signal, as if it had never been handled: a shell that runs a loop or a script goes on after a command
+/// that exits upon Ctrl-C, and stops after one that the signal has ended. Returns if the signal is blocked.
+void end_by(int signal);
+
 }  // namespace fastccd::tools

@@ -1,8 +1,8 @@
 // The command `fastccd`.
 //
 // Exit status: 0 fine (invalid pairs included: they are answered), 1 a file or stream cannot be used,
-// 2 the command line is wrong, 128 + n ended by signal n (130 for Ctrl-C, 141 when the reader of the
-// output went away).
+// 2 the command line is wrong; otherwise ended by a signal (130 for Ctrl-C and 141 when the reader of the
+// output went away, as shells count).
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -48,11 +48,34 @@ void refuse_empty_values(const std::vector<std::string_view>& arguments)
     }
 }
 
+/// One line of text, whatever a file's name holds: line breaks, and what would drive a terminal, are spelled out.
+std::string on_one_line(std::string_view text)
+{
+    std::string line;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7f)
+            line += fmt::format("\\x{:02x}", byte);
+        else
+            line += c;
+    }
+    return line;
+}
+
 int fail(std::string_view message)
 {
     // Not fmt::print: it throws when standard error cannot be written, and nobody is left to be told.
-    std::fputs(fmt::format("fastccd: {}\n", message).c_str(), stderr);
+    std::fputs(fmt::format("fastccd: {}\n", on_one_line(message)).c_str(), stderr);
     return exit_failure;
+}
+
+/// What is wrong with the words of a command line that nothing takes, in their order; CLI11 lists them backwards.
+std::string unexpected(const CLI::App& app)
+{
+    const std::vector<std::string> words = app.remaining(true);
+    const auto subcommand = std::find_if(words.begin(), words.end(), [](const std::string& word) { return !word.starts_with('-'); });
+    if (app.get_subcommands().empty() && subcommand != words.end()) return fmt::format("there is no subcommand '{}'", *subcommand);
+    return fmt::format("not expected: {}", fmt::join(words, " "));
 }
 
 /// One line: what is wrong, and where help is.
@@ -60,7 +83,16 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error)
 {
     std::string command = "fastccd";
     for (const CLI::App* const given : app->get_subcommands()) command += " " + given->get_name();
-    return fmt::format("fastccd: {}; see `{} --help`\n", error.what(), command);
+    const std::string what = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ? unexpected(*app) : error.what();
+    return fmt::format("fastccd: {}; see `{} --help`\n", on_one_line(what), command);
+}
+
+/// Not left to the exit status alone, see end_by.
+int ended_by(int signal)
+{
+    std::cout.flush();
+    fastccd::tools::end_by(signal);
+    return 128 + signal;
 }
 
 constexpr const char* footer = R"(Examples:
@@ -76,8 +108,8 @@ constexpr const char* footer = R"(Examples:
   fastccd isa
 
 Exit status: 0 all pairs answered, invalid input by name; 1 a file cannot be used;
-2 the command line is wrong; 128 + n ended by signal n: 130 by Ctrl-C, 143 by
-termination, 141 because the reader of the output went away.)";
+2 the command line is wrong. Ended by a signal, as shells count it: 130 by Ctrl-C,
+143 by termination, 141 because the reader of the output went away.)";
 
 }  // namespace
 
@@ -113,12 +145,12 @@ int main(int argc, char** argv)
     } catch (const CLI::ParseError& error) {
         if (app.exit(error) != 0) return exit_usage;
         if (std::cout.flush()) return 0;  // help, or the version
-        if (errno == EPIPE) return 128 + SIGPIPE;
+        if (errno == EPIPE) return ended_by(SIGPIPE);
         return fail(fmt::format("standard output: cannot be written: {}", std::generic_category().message(errno)));
     } catch (const Interrupted& interrupted) {
-        return 128 + interrupted.signal;
+        return ended_by(interrupted.signal);
     } catch (const BrokenPipe&) {
-        return 128 + SIGPIPE;
+        return ended_by(SIGPIPE);
     } catch (const std::bad_alloc&) {
         return fail("out of memory");
     } catch (const std::exception& error) {

@@ -21,7 +21,7 @@ std::variant<NpyPairs, RationalCsv> open(const std::filesystem::path& path, Roun
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".npy") return NpyPairs{path};
     if (extension == ".csv") return read_rational_csv(path, rounding);
-    throw InputError(path, "is of an unknown kind; files of pairs end in .npy or .csv");
+    throw InputError(path, "is of an unknown kind; pairs are read from files whose names end in .npy or .csv, not through pipes");
 }
 
 }  // namespace

@@ -45,6 +45,9 @@ public:
     Parser(std::string_view text, const std::filesystem::path& path, Rounding rounding)
         : path_{path}, rounding_{rounding}
     {
+        // Spreadsheets put this in front of UTF-8.
+        constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+        if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
         // Blank lines after the last row are an editor's, not a pair's.
         const std::size_t last = text.find_last_not_of(" \t\r\n");
         rest_ = text.substr(0, last == std::string_view::npos ? 0 : last + 1);

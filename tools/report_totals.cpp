@@ -73,8 +73,8 @@ std::string text_report(const PairOptions& options, const Question& question, co
         line("earliest", fmt::format("toi {:.17g} in pair {}", sum.earliest.toi, sum.earliest.pair));
     }
     if (totals.truth) {
-        line("missed", fmt::format("{} of {} pairs with a known answer", with_commas(totals.truth->missed),
-                                   with_commas(totals.truth->pairs)));
+        line("missed", fmt::format("{} of {} pairs with a known answer{}", with_commas(totals.truth->missed),
+                                   with_commas(totals.truth->pairs), totals.truth->missed > 0 ? "; is --kind right?" : ""));
         line("false alarms", with_commas(totals.truth->false_alarms));
     }
     line("invalid", sum.invalid == 0 ? "0" : fmt::format("{}  ({})", with_commas(sum.invalid), invalid_pairs(totals)));

@@ -12,7 +12,6 @@
 // a line instead.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -20,9 +19,9 @@
 
 #include <fastccd/indexed.hpp>
 
-namespace fastccd::tools {
+#include "edge.hpp"
 
-using Edge = std::array<std::int32_t, 2>;
+namespace fastccd::tools {
 
 /// One step: the same mesh at t = 0 and t = 1. Refers to arrays of the caller.
 struct Step {

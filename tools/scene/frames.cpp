@@ -26,9 +26,9 @@ void check_readable(const std::string& path)
 }
 
 void check_same_mesh(const std::string& path, const Mesh& mesh, const std::string& first_path,
-                     std::size_t vertex_count, const std::vector<std::int32_t>& faces)
+                     std::size_t vertex_count, const std::vector<std::int32_t>& faces, const std::vector<Edge>& lines)
 {
-    constexpr std::string_view rule = "all frames of a scene have the same vertices and faces";
+    constexpr std::string_view rule = "all frames of a scene have the same vertices, faces and lines";
     if (mesh.positions.size() / 3 != vertex_count) {
         throw InputError(path, fmt::format("has {} vertices, the first frame, {}, has {}; {}",
                                            mesh.positions.size() / 3, first_path, vertex_count, rule));
@@ -36,6 +36,15 @@ void check_same_mesh(const std::string& path, const Mesh& mesh, const std::strin
     if (mesh.faces.size() != faces.size()) {
         throw InputError(path, fmt::format("has {} faces, the first frame, {}, has {}; {}", mesh.faces.size() / 3,
                                            first_path, faces.size() / 3, rule));
+    }
+    if (mesh.lines.size() != lines.size()) {
+        throw InputError(path, fmt::format("has {} lines, the first frame, {}, has {}; {}", mesh.lines.size(),
+                                           first_path, lines.size(), rule));
+    }
+    if (const auto other = std::mismatch(lines.begin(), lines.end(), mesh.lines.begin()); other.first != lines.end()) {
+        const auto text = [](const Edge& line) { return fmt::format("{} {}", line[0], line[1]); };
+        throw InputError(path, fmt::format("has the vertices {} in line {}, the first frame, {}, has {}; {}", text(*other.second),
+                                           other.first - lines.begin(), first_path, text(*other.first), rule));
     }
     const auto difference = std::mismatch(faces.begin(), faces.end(), mesh.faces.begin()).first;
     if (difference == faces.end()) return;
@@ -55,7 +64,8 @@ Frames::Frames(std::vector<std::string> paths) : paths_{std::move(paths)}
     Mesh mesh = read_mesh(paths_.front());
     end_ = std::move(mesh.positions);
     faces_ = std::move(mesh.faces);
-    edges_ = unique_edges(faces_);
+    lines_ = std::move(mesh.lines);
+    edges_ = unique_edges(faces_, lines_);
     frames_read_ = 1;
 }
 
@@ -63,7 +73,7 @@ Step Frames::next_step()
 {
     const std::string& path = paths_.at(frames_read_);
     Mesh mesh = read_mesh(path);
-    check_same_mesh(path, mesh, paths_.front(), vertex_count(), faces_);
+    check_same_mesh(path, mesh, paths_.front(), vertex_count(), faces_, lines_);
     start_ = std::move(end_);
     end_ = std::move(mesh.positions);
     ++frames_read_;

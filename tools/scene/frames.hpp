@@ -10,7 +10,7 @@
 
 namespace fastccd::tools {
 
-/// Two or more mesh files that hold the same faces over the same number of vertices. Two frames are in
+/// Two or more mesh files that hold the same faces and lines over the same number of vertices. Two frames are in
 /// memory at a time; frames k and k + 1 are step k.
 class Frames {
 public:
@@ -33,6 +33,7 @@ private:
     std::vector<double> start_;  // positions at both ends of the current step
     std::vector<double> end_;
     std::vector<std::int32_t> faces_;
+    std::vector<Edge> lines_;
     std::vector<Edge> edges_;
 };
 

@@ -280,7 +280,7 @@ void make_cloth_ball(int size, int frames, const std::filesystem::path& out_dir,
     const NewFolder folder(out_dir);
     refuse_frames_left_over(frames, out_dir);
 
-    Mesh mesh{{}, scene.faces()};
+    Mesh mesh{.faces = scene.faces()};
     std::deque<OutputFile> files;  // after the folder: gone before it is found empty
     for (int frame = 0; frame < frames; ++frame) {
         mesh.positions = scene.positions(frame);

@@ -15,7 +15,7 @@ struct MeshError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Indices are int32, so no mesh has more vertices or faces than this.
+/// Indices are int32, so no mesh has more vertices, faces or lines than this.
 inline constexpr std::uint64_t max_count = std::numeric_limits<std::int32_t>::max();
 
 Mesh parse_ply(std::string_view content);

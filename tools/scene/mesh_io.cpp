@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cstddef>
@@ -114,36 +115,43 @@ void write_ply(const OutputFile& file, const Mesh& mesh)
     std::string bytes = fmt::format(
         "ply\nformat binary_little_endian 1.0\n"
         "element vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
-        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        "element face {}\nproperty list uchar int vertex_indices\n",
         mesh.positions.size() / 3, mesh.faces.size() / 3);
-    bytes.reserve(bytes.size() + 8 * mesh.positions.size() + 13 * (mesh.faces.size() / 3));
+    if (!mesh.lines.empty()) bytes += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", mesh.lines.size());
+    bytes += "end_header\n";
+    bytes.reserve(bytes.size() + 8 * mesh.positions.size() + 13 * (mesh.faces.size() / 3) + 8 * mesh.lines.size());
     for (const double coordinate : mesh.positions)
         append_little_endian(bytes, std::bit_cast<std::uint64_t>(coordinate), 8);
     for (std::size_t corner = 0; corner < mesh.faces.size(); ++corner) {
         if (corner % 3 == 0) bytes += '\3';
         append_little_endian(bytes, static_cast<std::uint32_t>(mesh.faces[corner]), 4);
     }
+    for (const Edge& line : mesh.lines)
+        for (const std::int32_t end : line) append_little_endian(bytes, static_cast<std::uint32_t>(end), 4);
     file.write(bytes);
 }
 
-std::vector<std::array<std::int32_t, 2>> unique_edges(const std::vector<std::int32_t>& faces)
+std::vector<Edge> unique_edges(const std::vector<std::int32_t>& faces, const std::vector<Edge>& lines)
 {
-    if (faces.empty()) return {};
-    const auto largest = static_cast<std::uint64_t>(*std::max_element(faces.begin(), faces.end()));
-    const auto index_bits = static_cast<int>(std::bit_width(largest));
+    std::int32_t largest = 0;
+    for (const std::int32_t vertex : faces) largest = std::max(largest, vertex);
+    for (const Edge& line : lines) largest = std::max({largest, line[0], line[1]});
+    const auto index_bits = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(largest)));
     std::vector<std::uint64_t> keys;  // low vertex above high vertex
-    keys.reserve(faces.size());
-    for (std::size_t corner = 0; corner < faces.size(); ++corner) {
-        const std::size_t next = corner % 3 == 2 ? corner - 2 : corner + 1;
-        const auto [low, high] = std::minmax(faces[corner], faces[next]);
+    keys.reserve(faces.size() + lines.size());
+    const auto add = [&](std::int32_t a, std::int32_t b) {
+        const auto [low, high] = std::minmax(a, b);
         if (low != high)
             keys.push_back(static_cast<std::uint64_t>(low) << index_bits |
                            static_cast<std::uint64_t>(high));
-    }
+    };
+    for (std::size_t corner = 0; corner < faces.size(); ++corner)
+        add(faces[corner], faces[corner % 3 == 2 ? corner - 2 : corner + 1]);
+    for (const Edge& line : lines) add(line[0], line[1]);
     radix_sort(keys, 2 * index_bits);
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
 
-    std::vector<std::array<std::int32_t, 2>> edges;
+    std::vector<Edge> edges;
     edges.reserve(keys.size());
     const std::uint64_t high_mask = (std::uint64_t{1} << index_bits) - 1;
     for (const std::uint64_t key : keys) {

@@ -1,4 +1,4 @@
-// Wavefront OBJ: the statements `v` and `f` (Wavefront Advanced Visualizer manual, appendix B1).
+// Wavefront OBJ: the statements `v`, `f` and `l` (Wavefront Advanced Visualizer manual, appendix B1).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,21 +24,38 @@ public:
             std::string_view line = lines_.line();
             const std::string_view statement = take_word(line);
             if (statement == "v") {
-                add_vertex(line);
+                add_vertex(whole_statement(line));
             } else if (statement == "f") {
-                add_face(line);
+                add_face(whole_statement(line));
+            } else if (statement == "l") {
+                add_line(whole_statement(line));
             }
         }
         check_forward_reference();
-        if (mesh_.positions.empty() || mesh_.faces.empty()) {
+        if (mesh_.positions.empty() || (mesh_.faces.empty() && mesh_.lines.empty())) {
             throw MeshError(
-                fmt::format("the mesh is empty ({} vertices, {} faces); it needs `v` and `f` lines",
+                fmt::format("the mesh is empty ({} vertices, {} faces); it needs `v` lines, and `f` or `l` lines",
                             vertex_count(), mesh_.faces.size() / 3));
         }
         return std::move(mesh_);
     }
 
 private:
+    // A backslash at its end continues a line on the next one.
+    std::string_view whole_statement(std::string_view line)
+    {
+        if (!line.ends_with('\\')) return line;
+        statement_.clear();
+        do {
+            line.remove_suffix(1);
+            statement_ += line;
+            statement_ += ' ';
+            if (!lines_.next()) return statement_;
+            line = lines_.line();
+        } while (line.ends_with('\\'));
+        return statement_ += line;
+    }
+
     [[nodiscard]] std::uint64_t vertex_count() const { return mesh_.positions.size() / 3; }
 
     [[noreturn]] void fail(const std::string& what) const
@@ -71,7 +88,7 @@ private:
         std::size_t corners = 0;
         for (std::string_view word = take_word(line); !word.empty() && word[0] != '#';
              word = take_word(line)) {
-            if (corners < 3) mesh_.faces.push_back(vertex_reference(word));
+            if (corners < 3) mesh_.faces.push_back(vertex_reference(word, "face"));
             ++corners;
         }
         if (corners != 3) {
@@ -81,27 +98,44 @@ private:
         }
     }
 
-    // Index from 0 of the vertex that a corner of a face refers to: from 1 in the file, or counted
+    // l a b c ..., each end v or v/vt: edges a b, b c, ...
+    void add_line(std::string_view line)
+    {
+        Edge edge{};
+        std::size_t ends = 0;
+        for (std::string_view word = take_word(line); !word.empty() && word[0] != '#';
+             word = take_word(line)) {
+            edge = {edge[1], vertex_reference(word, "line")};
+            if (++ends < 2) continue;
+            if (mesh_.lines.size() == max_count) fail("too many lines; at most 2^31 - 1 can be indexed");
+            mesh_.lines.push_back(edge);
+        }
+        if (ends < 2) fail(fmt::format("the line has {} vertices; it needs two at least", ends));
+    }
+
+    // Index from 0 of the vertex that a corner of a face, or an end of a line, refers to: from 1 in the file, or counted
     // backwards from the vertices so far when negative.
-    std::int32_t vertex_reference(std::string_view word)
+    std::int32_t vertex_reference(std::string_view word, std::string_view of)
     {
         const std::string_view texture_and_normal =
             word.substr(std::min(word.find('/'), word.size()));
         std::int64_t reference = 0;
         if (!parse_number(word.substr(0, word.size() - texture_and_normal.size()), reference) ||
             texture_and_normal.find_first_not_of("/-0123456789") != std::string_view::npos) {
-            fail(fmt::format("{} is not a vertex of a face; write v, v/vt, v//vn or v/vt/vn",
-                             in_quotes(word)));
+            fail(fmt::format("{} is not a vertex of a {}; write v, v/vt, v//vn or v/vt/vn",
+                             in_quotes(word), of));
         }
         const auto count = static_cast<std::int64_t>(vertex_count());
         const auto limit = static_cast<std::int64_t>(max_count);
-        if (reference == 0 || reference < -count || reference > limit) {
-            fail(fmt::format("the face refers to vertex {}, but {} vertices come before it",
+        if (reference == 0) fail(fmt::format("the {} refers to vertex 0, but OBJ counts from 1", of));
+        if (reference < -count || reference > limit) {
+            fail(fmt::format("the {} refers to vertex {}, but {} vertices come before it", of,
                              reference, count));
         }
-        // A face may stand before its vertices, so what is too large yet is judged at the end.
+        // A face or line may stand before its vertices, so what is too large yet is judged at the end.
         if (reference > count && reference > forward_reference_) {
             forward_reference_ = reference;
+            forward_of_ = of;
             forward_line_ = lines_.number();
         }
         return static_cast<std::int32_t>(reference > 0 ? reference - 1 : count + reference);
@@ -111,8 +145,8 @@ private:
     {
         if (forward_reference_ > static_cast<std::int64_t>(vertex_count())) {
             throw MeshError(
-                fmt::format("line {}: the face refers to vertex {}, but the file has {}",
-                            forward_line_, forward_reference_, vertex_count()));
+                fmt::format("line {}: the {} refers to vertex {}, but the file has {}",
+                            forward_line_, forward_of_, forward_reference_, vertex_count()));
         }
     }
 
@@ -120,6 +154,8 @@ private:
     Mesh mesh_;
     std::int64_t forward_reference_ = 0;  // the largest to a vertex that had not come yet
     std::size_t forward_line_ = 0;
+    std::string_view forward_of_;
+    std::string statement_;  // put together from several lines
 };
 
 }  // namespace

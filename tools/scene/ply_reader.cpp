@@ -70,6 +70,30 @@ bool is_index_list(const PlyProperty& property)
     return property.name == "vertex_indices" || property.name == "vertex_index";
 }
 
+// Which property of an edge is one of its ends, 2 for another one: as for position_axes.
+std::vector<std::size_t> edge_ends(const PlyElement& edge)
+{
+    constexpr std::array<std::string_view, 2> names{"vertex1", "vertex2"};
+    std::array<int, 2> found{};
+    std::vector<std::size_t> ends;
+    for (const PlyProperty& property : edge.properties) {
+        const auto end = static_cast<std::size_t>(std::find(names.begin(), names.end(), property.name) - names.begin());
+        if (end < 2 && (property.count_type || is_floating(property.type)))
+            throw MeshError(fmt::format("edge property '{}' must be an integer", names[end]));
+        if (end < 2) ++found[end];
+        ends.push_back(end);
+    }
+    for (std::size_t end = 0; end < 2; ++end) {
+        if (found[end] != 1) {
+            throw MeshError(fmt::format(
+                "the header declares edge property '{}' {} times; each of vertex1 and vertex2 is "
+                "needed once",
+                names[end], found[end]));
+        }
+    }
+    return ends;
+}
+
 void check_face_properties(const PlyElement& face)
 {
     const auto lists = std::count_if(face.properties.begin(), face.properties.end(), is_index_list);
@@ -105,6 +129,17 @@ std::vector<double> read_vertices(const PlyElement& element, Body& body)
 }
 
 template <class Body>
+std::int32_t read_vertex(PlyType type, std::uint64_t vertex_count, Body& body)
+{
+    const std::int64_t index = body.read_integer(type);
+    if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count) {
+        body.fail(fmt::format("it refers to vertex {}; the file has vertices 0 to {}", index,
+                              vertex_count - 1));
+    }
+    return static_cast<std::int32_t>(index);
+}
+
+template <class Body>
 void read_triangle(const PlyProperty& list, std::uint64_t vertex_count,
                    std::vector<std::int32_t>& faces, Body& body)
 {
@@ -113,14 +148,7 @@ void read_triangle(const PlyProperty& list, std::uint64_t vertex_count,
         body.fail(fmt::format(
             "it has {} vertices; only triangles are read, triangulate the mesh first", corners));
     }
-    for (int corner = 0; corner < 3; ++corner) {
-        const std::int64_t index = body.read_integer(list.type);
-        if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count) {
-            body.fail(fmt::format("it refers to vertex {}; the file has vertices 0 to {}", index,
-                                  vertex_count - 1));
-        }
-        faces.push_back(static_cast<std::int32_t>(index));
-    }
+    for (int corner = 0; corner < 3; ++corner) faces.push_back(read_vertex(list.type, vertex_count, body));
 }
 
 template <class Body>
@@ -144,6 +172,25 @@ std::vector<std::int32_t> read_faces(const PlyElement& element, std::uint64_t ve
 }
 
 template <class Body>
+std::vector<Edge> read_edges(const PlyElement& element, std::uint64_t vertex_count, Body& body)
+{
+    const std::vector<std::size_t> ends = edge_ends(element);
+    std::vector<Edge> edges(static_cast<std::size_t>(element.count));
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        body.begin({element.name, i});
+        for (std::size_t k = 0; k < ends.size(); ++k) {
+            if (ends[k] < 2) {
+                edges[i][ends[k]] = read_vertex(element.properties[k].type, vertex_count, body);
+            } else {
+                skip_property(element.properties[k], body);
+            }
+        }
+        body.end();
+    }
+    return edges;
+}
+
+template <class Body>
 void skip_element(const PlyElement& element, Body& body)
 {
     if (element.properties.empty()) return;  // nothing in the file, however many there are
@@ -164,6 +211,8 @@ Mesh read_body(const PlyHeader& header, std::uint64_t vertex_count, Body body)
             mesh.positions = read_vertices(element, body);
         } else if (element.name == "face") {
             mesh.faces = read_faces(element, vertex_count, body);
+        } else if (element.name == "edge" && element.count > 0) {
+            mesh.lines = read_edges(element, vertex_count, body);
         } else {
             skip_element(element, body);
         }
@@ -178,21 +227,23 @@ Mesh parse_ply(std::string_view content)
 {
     LineCursor lines(content);
     const PlyHeader header = parse_ply_header(lines);
-    for (const char* const name : {"vertex", "face"}) {
+    const auto count_of = [&](const char* name) {
         const PlyElement* const element = header.find(name);
         const std::uint64_t count = element == nullptr ? 0 : element->count;
-        if (count == 0)
-            throw MeshError(
-                fmt::format("the mesh is empty: the header declares no element '{}'", name));
         if (count > max_count) {
             throw MeshError(
                 fmt::format("the header claims {} elements '{}'; at most 2^31 - 1 can be indexed",
                             count, name));
         }
+        return count;
+    };
+    const std::uint64_t vertex_count = count_of("vertex"), face_count = count_of("face");
+    if (vertex_count == 0 || face_count + count_of("edge") == 0) {
+        throw MeshError(fmt::format("the mesh is empty: the header declares no elements '{}'",
+                                    vertex_count == 0 ? "vertex" : "face' or 'edge"));
     }
-    check_face_properties(*header.find("face"));
+    if (face_count > 0) check_face_properties(*header.find("face"));
 
-    const std::uint64_t vertex_count = header.find("vertex")->count;
     if (header.format == PlyFormat::ascii) return read_body(header, vertex_count, AsciiBody(lines));
     return read_body(header, vertex_count, BinaryBody(content, lines.offset(), header.format));
 }
