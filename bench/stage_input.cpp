@@ -82,9 +82,9 @@ bool has_root(const SearchParameters& parameters, PairRecord<double>& record)
         record.threshold = pieces.threshold;
         record.low = pieces.time[i];
         record.high = pieces.time[i + 1];
-        record.guess = (record.low + record.high) * 0.5;
+        record.pair = (record.low + record.high) * 0.5;
         for (int step = 0; step < quick_steps; ++step)
-            record.guess = clipped_step<double>(record.f, {record.low, record.high}, record.guess);
+            record.pair = clipped_step<double>(record.f, {record.low, record.high}, record.pair);
         return true;
     }
     return false;

@@ -143,9 +143,10 @@ unsigned householder_bracketed(const bench::StageInput& input)
 {
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         compute_again(root, *input.parameters);
-        const LaneMask<L> rising = less(evaluate(root.f, root.low), evaluate(root.f, root.high));
+        const L at_low = evaluate(root.f, root.low), at_high = evaluate(root.f, root.high);
+        const LaneMask<L> rising = less(at_low, at_high);
         Bracket<L> bracket{root.low, root.high};
-        L guess = root.guess;
+        L guess = first_guess(bracket, at_low, at_high);
         for (int step = 0; step < most_steps; ++step) guess = bracketed_step(root.f, rising, bracket, guess);
         keep(guess);
         return Lane<L>::bits(less_equal(guess, root.high));
@@ -158,7 +159,7 @@ unsigned projected(const bench::StageInput& input)
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         compute_again(root, *input.parameters);
         const Inclusion<L> found =
-            projected_inclusion<kind>(root.r, root.scale, root.guess, broadcast<L>(quick_bracket), input.parameters->bounds);
+            projected_inclusion<kind>(root.r, root.scale, root.pair, broadcast<L>(quick_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(found.absent);
     });
 }
@@ -169,7 +170,7 @@ unsigned area(const bench::StageInput& input)
     return for_each_batch(input.roots, [&](PairRecord<L>& root) FASTCCD_INLINE_LAMBDA {
         compute_again(root, *input.parameters);
         const LaneMask<L> absent =
-            area_certificate<kind>(root.r, root.scale, root.guess, broadcast<L>(quick_bracket), input.parameters->bounds);
+            area_certificate<kind>(root.r, root.scale, root.pair, broadcast<L>(quick_bracket), input.parameters->bounds);
         return (1u << width) - 1 - Lane<L>::bits(absent);
     });
 }

@@ -23,7 +23,7 @@ struct StageInput {
     const double* blocks;         ///< `pairs` packed pairs, a multiple of 8.
     std::size_t pairs;
     const PairQueue* candidates;  ///< Pairs that no certificate dismisses.
-    const RootQueue* roots;       ///< Pieces with a sign change of their cubic; `guess` is after the first steps.
+    const RootQueue* roots;       ///< Pieces with a sign change of their cubic; in `pair`, which no stage asks for, the guess after the first steps.
 };
 
 /// Runs over all entries of its input once; returns how many of them go on to the next stage.

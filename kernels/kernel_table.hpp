@@ -32,7 +32,7 @@ struct LaneQueue {
 };
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<19>;
-using RootQueue = LaneQueue<22>;
+using RootQueue = LaneQueue<21>;
 /// Pairs that screening leaves: where the first of their coordinates lies, the others in steps of block_pairs, and their numbers.
 struct ScreenedQueue {
     static constexpr unsigned capacity = LaneQueue<1>::capacity;

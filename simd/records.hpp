@@ -20,7 +20,7 @@ struct PairRecord {
     PowerCubic<L> f;
     L threshold;  ///< See sign_threshold.
     L low, high;  ///< The piece.
-    L guess;      ///< Where the next stage starts.
+    L guess;      ///< Where the root is, as far as is known.
 };
 
 /// The part of [0, 1] in which a pair may be in contact.
@@ -72,7 +72,7 @@ template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const RootQueue&, Record& record, Visit visit)
 {
     for_each_common_field(record, visit);
-    visit(record.low), visit(record.high), visit(record.guess);
+    visit(record.low), visit(record.high);
 }
 
 /// What the queues leave out, for the pair.

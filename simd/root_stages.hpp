@@ -65,8 +65,6 @@ private:
         drop_front(scratch.candidates, end);
     }
 
-    FASTCCD_INLINE static L middle(L low, L high) { return (low + high) * broadcast<L>(0.5); }
-
     /// Leaves them where find_pieces() puts the piece.
     FASTCCD_INLINE void find_extrema(unsigned i)
     {
@@ -114,7 +112,7 @@ private:
         const L high = select<L>(in_first, pieces.time[1], select<L>(in_second, pieces.time[2], pieces.time[3]));
         Lane<L>::store(&search.low[i], low);
         Lane<L>::store(&search.high[i], high);
-        Lane<L>::store(&search.guess[i], middle(low, high));
+        Lane<L>::store(&search.guess[i], (low + high) * broadcast<L>(0.5));
         Lane<L>::store(&search.later_low[i], select<L>(first_two, pieces.time[1], pieces.time[2]));
         Lane<L>::store(&search.later_high[i], select<L>(first_two, pieces.time[2], pieces.time[3]));
     }
@@ -217,18 +215,15 @@ private:
         const L second_low = Lane<L>::load(&scratch.search.later_low[i]), second_high = Lane<L>::load(&scratch.search.later_high[i]);
         root.low = select<L>(decided, second_low, root.low);
         root.high = select<L>(decided, second_high, root.high);
-        root.guess = select<L>(decided, middle(second_low, second_high), root.guess);
         leave_for_later(root, undecided | second);
         if (const unsigned both = undecided & second; both != 0) {
             root.low = second_low;
             root.high = second_high;
-            root.guess = middle(second_low, second_high);
             leave_for_later(root, both);
         }
         if (const unsigned third = scratch.search.pieces[2][i / width] & ~settled; third != 0) {
             root.low = Lane<L>::load(&scratch.search.later_high[i]);
             root.high = Lane<L>::load(&scratch.search.end[i]);
-            root.guess = middle(root.low, root.high);
             leave_for_later(root, third);
         }
     }
@@ -258,10 +253,12 @@ private:
         read(scratch.slow, i, root);
         root.f = power_basis(bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1))));
         store(refinement.f, i, root.f);
-        Lane<L>::store(&refinement.slope[i], evaluate(root.f, root.high) - evaluate(root.f, root.low));
+        const L at_low = evaluate(root.f, root.low), at_high = evaluate(root.f, root.high);
+        Lane<L>::store(&refinement.slope[i], at_high - at_low);
         Lane<L>::store(&refinement.low[i], root.low);
         Lane<L>::store(&refinement.high[i], root.high);
-        Lane<L>::store(&refinement.guess[i], root.guess);
+        // Anew: the guess of a root that few steps have not decided is not worth to be queued.
+        Lane<L>::store(&refinement.guess[i], first_guess(Bracket<L>{root.low, root.high}, at_low, at_high));
     }
 
     FASTCCD_INLINE void refine_root(unsigned i)
