@@ -43,7 +43,7 @@ struct Bracket {
 };
 
 /// Where to begin in a monotone piece, given f at its ends: between its middle and where the secant vanishes, as most pieces bend like
-/// an S from one extremum to the next. The weights are those after which two steps find the most roots of random pairs.
+/// an S from one extremum to the next. The weights are those with which two steps find the most roots of random pairs.
 template <class L>
 FASTCCD_INLINE L first_guess(const Bracket<L>& piece, L at_low, L at_high)
 {

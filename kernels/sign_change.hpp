@@ -66,7 +66,7 @@ FASTCCD_INLINE PowerCubic<L> power_basis(const Cubic<L>& f)
     return {f.c0, three * g.d0, three * g.h, g.A};
 }
 
-/// Where f is smallest or largest within [0, 1], in order; the same end of it twice if f is monotone there.
+/// Where f has its extrema within [0, 1], in order; ends of it in place of those that are not there.
 template <class L>
 struct Extrema {
     L first, second;

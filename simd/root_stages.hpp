@@ -257,7 +257,7 @@ private:
         Lane<L>::store(&refinement.slope[i], at_high - at_low);
         Lane<L>::store(&refinement.low[i], root.low);
         Lane<L>::store(&refinement.high[i], root.high);
-        // Anew: the guess of a root that few steps have not decided is not worth to be queued.
+        // Anew: the guess of a root that few steps have not decided is not worth queueing.
         Lane<L>::store(&refinement.guess[i], first_guess(Bracket<L>{root.low, root.high}, at_low, at_high));
     }
 

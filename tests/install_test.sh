@@ -59,7 +59,20 @@ done
 grep -q "there is no component 'no_such_component'" "$work/log" || fail "the component that is not there is not named: $(cat "$work/log")"
 
 # The static library is for projects with C++: in C alone nothing would link the standard library.
-printf 'cmake_minimum_required(VERSION 3.22)\nproject(c_alone LANGUAGES C)\nfind_package(fastccd 0.1 REQUIRED COMPONENTS static)\n' >"$work/refused/CMakeLists.txt"
+cat >"$work/refused/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.22)
+project(c_alone LANGUAGES C)
+find_package(fastccd 0.1 QUIET COMPONENTS static)
+if(fastccd_FOUND OR TARGET fastccd::fastccd)
+  message(FATAL_ERROR "the static library without C++")
+endif()
+find_package(fastccd 0.1 REQUIRED COMPONENTS shared OPTIONAL_COMPONENTS static)
+get_target_property(aliased fastccd::fastccd ALIASED_TARGET)
+if(fastccd_static_FOUND OR NOT aliased STREQUAL fastccd::shared)
+  message(FATAL_ERROR "fastccd::fastccd is ${aliased}")
+endif()
+find_package(fastccd 0.1 REQUIRED COMPONENTS static)
+END
 rm -rf "$work/refused/build"
 if env CC="$cc" cmake -S "$work/refused" -B "$work/refused/build" -DCMAKE_PREFIX_PATH="$prefix" >"$work/log" 2>&1; then
   fail "find_package with COMPONENTS static was accepted without C++"

@@ -215,7 +215,7 @@ TEST(MeshIo, ReadsEveryTypeAndSkipsWhatIsExtra)
     const Mesh mesh = parse_ply(
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty list uchar float "
         "extra\nproperty int y\n"
-        "property uchar red\nproperty int z\nelement fold 1\nproperty int a\nproperty int b\n"
+        "property uchar red\nproperty int z\nelement edge 1\nproperty int a\nproperty int b\n"
         "element face 1\nproperty list uchar uint vertex_indices\nproperty uchar flag\nend_header\n"
         "1 2 0.5 0.5 2 255 3\n4 0 5 0 6\n7 1 9 8 0 9\n0 1\n3 0 1 2 1\n");
     EXPECT_EQ(mesh.positions, (std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8, 9}));
@@ -244,6 +244,10 @@ TEST(MeshIo, ObjStatementsGoOnAfterABackslash)
     EXPECT_EQ(mesh.positions, triangle_positions);
     EXPECT_EQ(mesh.faces, triangle_faces);
     EXPECT_EQ(mesh.lines, (std::vector<Edge>{{0, 1}}));
+    const Mesh comments = parse_obj("v 0 0 0 # C:\\\nv 1 0 0\nv 0 1 0\nf\\\n1 2 3 # D:\\\nf 3 2 1 #\\\nl 1 2\n");
+    EXPECT_EQ(comments.positions, triangle_positions) << "comments do not go on";
+    EXPECT_EQ(comments.faces, (std::vector<std::int32_t>{0, 1, 2, 2, 1, 0}));
+    EXPECT_EQ(comments.lines, (std::vector<Edge>{{0, 1}}));
     EXPECT_EQ(parse_obj("v 0 0 0\nv 1 0 0\nl 1 2 \\").lines, (std::vector<Edge>{{0, 1}})) << "nothing comes after the last one";
 }
 
@@ -262,6 +266,8 @@ TEST(MeshIo, ReadsLines)
                                 "0 255 1\n2 255 1\n3 0 1 2\n");
     EXPECT_EQ(both.lines, (std::vector<Edge>{{1, 0}, {1, 2}}));
     EXPECT_EQ(both.faces, triangle_faces);
+    EXPECT_EQ(parse_ply(header + "element edge 1\nproperty int v0\nproperty int v1\nend_header\n" + triangle_vertices + "2 0\n").lines,
+              (std::vector<Edge>{{2, 0}}));
     Bytes binary(std::endian::big,
                  "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\n"
                  "element edge 1\nproperty ushort vertex1\nproperty int vertex2\nend_header\n");
@@ -358,7 +364,8 @@ TEST(MeshIo, NamesWhatIsWrongWithPly)
          "line 13: face 0: it has 4 vertices; only triangles are read"},
         {edited("3 0 1 2", "2 0 1"), "line 13: face 0: it has 2 vertices"},
         {triangle + "3 0 1 2\n", "line 14: the file goes on after the last element"},
-        {edited("element face 1\n", "element edge 1\n"), "the header declares edge property 'vertex1' 0 times"},
+        {edited("element face 1\n", "element edge 1\n"), "the mesh is empty: the header declares no elements 'face' or 'edge'"},
+        {with_edge("property int v1\n", "0\n"), "the header declares edge property 'v0' 0 times; each of v0 and v1"},
         {with_edge("property int vertex1\nproperty int vertex1\n", "0 1\n"), "the header declares edge property 'vertex1' 2 times"},
         {with_edge("property int vertex1\nproperty float vertex2\n", "0 1\n"), "edge property 'vertex2' must be an integer"},
         {with_edge("property int vertex1\nproperty list uchar int vertex2\n", "0 1 1\n"), "edge property 'vertex2' must be an integer"},
@@ -401,7 +408,7 @@ TEST(MeshIo, NamesWhatIsWrongWithObj)
         {vertices + "l 1 4\n", "line 4: the line refers to vertex 4, but the file has 3"},
         {vertices + "l 1 2 -4\n", "line 4: the line refers to vertex -4, but 3 vertices come before it"},
         {vertices + "l 1 b\n", "line 4: 'b' is not a vertex of a line"},
-        {vertices + "f 1 2 \\\n 9\n", "line 5: the face refers to vertex 9"},
+        {vertices + "f 1 2 \\\n 9\n", "line 4: the face refers to vertex 9"},
         {vertices + "f 1 2 -4\n",
          "line 4: the face refers to vertex -4, but 3 vertices come before it"},
         {vertices + "f 1 2 4\n#\n", "line 4: the face refers to vertex 4, but the file has 3"},

@@ -41,7 +41,7 @@ void refuse_other_frames(const ClothBall& scene, const std::filesystem::path& ou
         bool same = false;
         try {
             const Mesh mesh = read_mesh(path);
-            same = mesh.faces == scene.faces() && mesh.positions == scene.positions(frame);
+            same = mesh.faces == scene.faces() && mesh.lines.empty() && mesh.positions == scene.positions(frame);
         } catch (const InputError&) {
             // No mesh that can be read: not ours.
         }

@@ -74,7 +74,8 @@ void add_random_command(CLI::App& app)
         })
         ->check(not_empty())
         ->check([](const std::string& path) {
-            return path.ends_with(".csv") ? "what is written is .npy, and `run` would read it as its name says" : "";
+            const std::string extension = std::filesystem::path{path}.extension().string();
+            return CLI::detail::to_lower(extension) == ".csv" ? "what is written is .npy, and `run` would read it as its name says" : "";
         })
         ->type_name("OUT.npy");
     add_pair_options(*command, options->common);

@@ -33,7 +33,7 @@ struct Mesh {
 ///
 /// A file that begins with the line "ply" is PLY, any other named *.obj is OBJ. Positions keep full
 /// precision: ascii numbers are correctly rounded to the property's type (OBJ: double), floats and
-/// integers widened exactly. Extra PLY properties and elements and all OBJ statements but `v`, `f` and
+/// integers widened exactly. Extra PLY properties and elements (edges without two vertices, too) and all OBJ statements but `v`, `f` and
 /// `l` are skipped. NaN and infinity are read as they are.
 ///
 /// Throws InputError, naming line or byte and element, when the file is missing, unreadable,

@@ -22,7 +22,12 @@ public:
     {
         while (lines_.next()) {
             std::string_view line = lines_.line();
-            const std::string_view statement = take_word(line);
+            std::string_view statement = take_word(line);
+            if (statement.size() == 2 && statement[1] == '\\' && line.empty()) {
+                line = statement.substr(1);
+                statement = statement.substr(0, 1);
+            }
+            first_line_ = lines_.number();
             if (statement == "v") {
                 add_vertex(whole_statement(line));
             } else if (statement == "f") {
@@ -41,10 +46,19 @@ public:
     }
 
 private:
+    // Not of a comment: what comes after it may be a face.
+    static bool goes_on(std::string_view line)
+    {
+        if (!line.ends_with('\\')) return false;
+        for (std::string_view word = take_word(line); !word.empty(); word = take_word(line))
+            if (word[0] == '#') return false;
+        return true;
+    }
+
     // A backslash at its end continues a line on the next one.
     std::string_view whole_statement(std::string_view line)
     {
-        if (!line.ends_with('\\')) return line;
+        if (!goes_on(line)) return line;
         statement_.clear();
         do {
             line.remove_suffix(1);
@@ -52,7 +66,7 @@ private:
             statement_ += ' ';
             if (!lines_.next()) return statement_;
             line = lines_.line();
-        } while (line.ends_with('\\'));
+        } while (goes_on(line));
         return statement_ += line;
     }
 
@@ -60,7 +74,7 @@ private:
 
     [[noreturn]] void fail(const std::string& what) const
     {
-        throw MeshError(fmt::format("line {}: {}", lines_.number(), what));
+        throw MeshError(fmt::format("line {}: {}", first_line_, what));
     }
 
     // v x y z [w] or v x y z r g b: what follows the position is skipped.
@@ -136,7 +150,7 @@ private:
         if (reference > count && reference > forward_reference_) {
             forward_reference_ = reference;
             forward_of_ = of;
-            forward_line_ = lines_.number();
+            forward_line_ = first_line_;
         }
         return static_cast<std::int32_t>(reference > 0 ? reference - 1 : count + reference);
     }
@@ -151,6 +165,7 @@ private:
     }
 
     LineCursor lines_;
+    std::size_t first_line_ = 0;  // of the statement
     Mesh mesh_;
     std::int64_t forward_reference_ = 0;  // the largest to a vertex that had not come yet
     std::size_t forward_line_ = 0;

@@ -70,10 +70,17 @@ bool is_index_list(const PlyProperty& property)
     return property.name == "vertex_indices" || property.name == "vertex_index";
 }
 
-// Which property of an edge is one of its ends, 2 for another one: as for position_axes.
+// Which property of an edge is one of its ends, 2 for another one: as for position_axes. vertex1 and vertex2 are the format's names,
+// v0 and v1 those of some writers. Nothing if there are none: then they are edges of another kind.
 std::vector<std::size_t> edge_ends(const PlyElement& edge)
 {
-    constexpr std::array<std::string_view, 2> names{"vertex1", "vertex2"};
+    using Names = std::array<std::string_view, 2>;
+    const auto has = [&](std::string_view name) {
+        return std::any_of(edge.properties.begin(), edge.properties.end(), [&](const PlyProperty& property) { return property.name == name; });
+    };
+    const bool any = has("vertex1") || has("vertex2"), any_other = has("v0") || has("v1");
+    if (!any && !any_other) return {};
+    const Names names = any ? Names{"vertex1", "vertex2"} : Names{"v0", "v1"};
     std::array<int, 2> found{};
     std::vector<std::size_t> ends;
     for (const PlyProperty& property : edge.properties) {
@@ -86,9 +93,9 @@ std::vector<std::size_t> edge_ends(const PlyElement& edge)
     for (std::size_t end = 0; end < 2; ++end) {
         if (found[end] != 1) {
             throw MeshError(fmt::format(
-                "the header declares edge property '{}' {} times; each of vertex1 and vertex2 is "
+                "the header declares edge property '{}' {} times; each of {} and {} is "
                 "needed once",
-                names[end], found[end]));
+                names[end], found[end], names[0], names[1]));
         }
     }
     return ends;
@@ -172,9 +179,8 @@ std::vector<std::int32_t> read_faces(const PlyElement& element, std::uint64_t ve
 }
 
 template <class Body>
-std::vector<Edge> read_edges(const PlyElement& element, std::uint64_t vertex_count, Body& body)
+std::vector<Edge> read_edges(const PlyElement& element, const std::vector<std::size_t>& ends, std::uint64_t vertex_count, Body& body)
 {
-    const std::vector<std::size_t> ends = edge_ends(element);
     std::vector<Edge> edges(static_cast<std::size_t>(element.count));
     for (std::uint64_t i = 0; i < element.count; ++i) {
         body.begin({element.name, i});
@@ -211,8 +217,8 @@ Mesh read_body(const PlyHeader& header, std::uint64_t vertex_count, Body body)
             mesh.positions = read_vertices(element, body);
         } else if (element.name == "face") {
             mesh.faces = read_faces(element, vertex_count, body);
-        } else if (element.name == "edge" && element.count > 0) {
-            mesh.lines = read_edges(element, vertex_count, body);
+        } else if (element.name == "edge" && !edge_ends(element).empty()) {
+            mesh.lines = read_edges(element, edge_ends(element), vertex_count, body);
         } else {
             skip_element(element, body);
         }
@@ -238,7 +244,8 @@ Mesh parse_ply(std::string_view content)
         return count;
     };
     const std::uint64_t vertex_count = count_of("vertex"), face_count = count_of("face");
-    if (vertex_count == 0 || face_count + count_of("edge") == 0) {
+    const bool has_lines = count_of("edge") > 0 && !edge_ends(*header.find("edge")).empty();
+    if (vertex_count == 0 || (face_count == 0 && !has_lines)) {
         throw MeshError(fmt::format("the mesh is empty: the header declares no elements '{}'",
                                     vertex_count == 0 ? "vertex" : "face' or 'edge"));
     }

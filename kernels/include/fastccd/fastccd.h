@@ -107,7 +107,7 @@ typedef struct fastccd_step {
     size_t size;
     double step;  /* nothing touches in [0, step); t_max if there is no contact; 0 on every error */
     size_t pair;  /* the pair that limits the step; SIZE_MAX: none */
-    int32_t kind; /* enum fastccd_kind: which candidates `pair`, here or in the fault, counts */
+    int32_t kind; /* enum fastccd_kind: which candidates `pair`, here or in the fault of a pair, counts */
     int32_t reserved;
 } fastccd_step;
 
@@ -141,7 +141,7 @@ FASTCCD_API int fastccd_vertex_face_toi(const double x0[12], const double x1[12]
 FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
 
 /* Packed pairs: `pairs` is count x 8 x 3, the points x0..x3 at t = 0, then at t = 1.
- * toi: count values as above. roots, or NULL: count numbers of contact roots (odd: through, even: grazing; 0: none, or
+ * toi: count values as above. roots, or NULL: count numbers of contact roots (odd: through, or at an end of the step, even: grazing; 0: none, or
  * not countable). `options`, `summary`: or NULL. O(count). */
 FASTCCD_API int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                              double* toi, uint8_t* roots, fastccd_summary* summary);

@@ -43,7 +43,7 @@ struct Options {
     /// coordinates' exponents spread over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
-    /// which they are as close; pairs within d at the start have toi 0 (Contact::at_start), all others in contact a positive one
+    /// which they are as close; pairs not certainly farther apart than d at the start have toi 0 (Contact::at_start), all others in contact a positive one
     /// (or 0, as if at the start, if that time is below 2^-1071).
     /// Finite, in units of the coordinates. Not together with `exact`; contact roots are not counted.
     double minimum_separation = 0.0;
@@ -70,7 +70,7 @@ struct Summary {
     std::size_t pairs = 0;         ///< Pairs asked about.
     std::size_t contacts = 0;      ///< Pairs reported in contact.
     std::size_t proven = 0;        ///< Of these, the proven ones; see Contact.
-    std::size_t at_start = 0;      ///< Of these, the ones closer than a minimum separation from the start.
+    std::size_t at_start = 0;      ///< Of these, the ones with Contact::at_start.
     std::size_t odd = 0;           ///< Contacts at an odd number of roots, when roots were asked for.
     std::size_t even = 0;          ///< Contacts at an even number of roots, when roots were asked for.
     std::size_t invalid = 0;       ///< Pairs with a NaN or an infinity.
