@@ -49,7 +49,7 @@ FASTCCD_INLINE Window<L> window_of(L pair)
     return {select<L>(first, half, broadcast<L>(0.0)), select<L>(less(between, fraction), half, broadcast<L>(1.0))};
 }
 
-// Call visit(field) for each field that a queue holds, always in the same order.
+// Call visit(field) for each field that a queue holds, always in the same order. Of a PairQueue, `pair` is the last: see read_pair.
 
 template <class Record, class Visit>
 FASTCCD_INLINE void for_each_common_field(Record& record, Visit& visit)

@@ -89,12 +89,12 @@ private:
         const Extrema<L> cuts{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
         const MonotonePieces<L> pieces = monotone_pieces(load<PowerCubic, L>(search.f, i), cuts, Lane<L>::load(&search.threshold[i]),
                                                          window.low, window.high);
-        const unsigned certain =
-            lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), Lane<L>::load(&search.scale[3][i])));
+        const Scales<L> scale = load<Scales, L>(search.scale, i);
+        const unsigned certain = lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), scale.volume));
         if (certain != lanes) {
             PairRecord<L> record;
             read(scratch.candidates, i, record);
-            record.scale = load<Scales, L>(search.scale, i);
+            record.scale = scale;
             look_at_quarters(record, lanes & ~certain);
         }
 

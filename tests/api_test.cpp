@@ -1,9 +1,11 @@
 // What the public functions promise about arguments, errors and odd inputs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "generators.hpp"
@@ -167,6 +169,27 @@ TEST(Api, InvalidPairsAreNamedAndTheOthersAnswered)
                 }
             }
         }
+    }
+}
+
+/// A vertex at rest at the origin, and a face with vertices (l, 0, 1), (0, l, -1), (l, 2 l, 2), l = t - a: at t = a it is a segment
+/// through the vertex, and the cubic has a double root.
+TEST(Api, ATangentialRootCountsTwiceButAtAnEndOfTheStep)
+{
+    for (const auto& [a, t_max, expected] : {std::tuple{0.5, 1.0, 2}, {0.25, 0.5, 2}, {0.0, 1.0, 1}, {1.0, 1.0, 1}, {0.5, 0.5, 1}}) {
+        double pair[24] = {};
+        for (int end = 0; end < 2; ++end) {
+            const double l = end - a;
+            const double face[9] = {l, 0, 1, 0, l, -1, l, 2 * l, 2};
+            std::copy_n(face, 9, pair + 12 * end + 3);
+        }
+        Options options;
+        options.t_max = t_max;
+        double toi = 0.0;
+        std::uint8_t roots = 0;
+        ASSERT_TRUE(time_of_impact(PairKind::vertex_face, PairView::interleaved(pair, 1), options, {&toi, 1}, nullptr, {&roots, 1}).ok());
+        EXPECT_LE(toi, a);
+        EXPECT_EQ(roots, expected) << a << " in [0, " << t_max << "]";
     }
 }
 

@@ -59,12 +59,18 @@ static void test_threads(void)
     enum { many = 1 << 16 };
     double* const pairs = calloc(many, 24 * sizeof(double));
     double* const toi = malloc(many * sizeof(double));
+    int32_t* const candidates = calloc(many, 2 * sizeof(int32_t)); /* vertex 0 and face 0, always */
+    const fastccd_mesh mesh = make_mesh();
     fastccd_options options;
+    fastccd_step step;
+    fastccd_contact first;
+    size_t found = 0;
     cpu_set_t processors;
     const int several = sched_getaffinity(0, sizeof processors, &processors) == 0 && CPU_COUNT(&processors) > 1;
     const int before = count_threads(); /* an emulator has some of its own */
     int i, tries = 0;
-    EXPECT(pairs != NULL && toi != NULL);
+    EXPECT(pairs != NULL && toi != NULL && candidates != NULL);
+    step.size = sizeof step;
     if (failures > 0) return;
     for (i = 0; i < many; ++i) {
         memcpy(pairs + 24 * i, start, 12 * sizeof(double));
@@ -74,6 +80,11 @@ static void test_threads(void)
     options.threads = 1;
     EXPECT(fastccd_pairs_time_of_impact(FASTCCD_VERTEX_FACE, pairs, many, &options, toi, NULL, NULL) == FASTCCD_OK);
     EXPECT(near(toi[0], 0.5) && toi[many - 1] == toi[0] && count_threads() == before);
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_VERTEX_FACE, pairs, many, &options, NULL, 0, &found, NULL) == FASTCCD_OK && found == many);
+    EXPECT(fastccd_mesh_time_of_impact(&mesh, FASTCCD_VERTEX_FACE, candidates, many, &options, toi, NULL, NULL, NULL) == FASTCCD_OK);
+    EXPECT(fastccd_mesh_collision_free_step(&mesh, candidates, many, NULL, 0, &options, &step, NULL) == FASTCCD_OK && step.step == toi[0]);
+    EXPECT(fastccd_mesh_earliest_contact(&mesh, FASTCCD_VERTEX_FACE, candidates, many, &options, &first, NULL, NULL) == FASTCCD_OK);
+    EXPECT(first.toi == toi[0] && first.pair == 0 && count_threads() == before);
     options.threads = 0;
     do {
         EXPECT(fastccd_pairs_time_of_impact(FASTCCD_VERTEX_FACE, pairs, many, &options, toi, NULL, NULL) == FASTCCD_OK);
@@ -82,6 +93,7 @@ static void test_threads(void)
     EXPECT(!several || count_threads() > before);
     free(pairs);
     free(toi);
+    free(candidates);
 }
 
 static void test_queries(void)
@@ -327,6 +339,11 @@ static void test_other_sizes(void)
     EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_BAD_ARGUMENT);
     options.known.size = 0;
     EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_BAD_ARGUMENT);
+    options.known.size = sizeof options.known;
+    options.known.threads = -1;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_BAD_ARGUMENT);
+    options.known.size = offsetof(fastccd_options, threads); /* compiled before there were threads: not read */
+    EXPECT(fastccd_vertex_face_toi(start, end, &options.known, &toi) == FASTCCD_OK && near(toi, 0.5));
 
     summary.known.size = sizeof summary;
     summary.later = 1.0;

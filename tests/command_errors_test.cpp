@@ -136,7 +136,7 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random", "--kind", "vf", "--min-separation", "1e-400"}, "--min-separation: '1e-400' is too small"},
         {{"run", "--kind", "vf", "--hits=", none}, "--hits=: the value is empty"},
         {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
-        {{"random", "--kind", "vf", "--save", directory / "pairs.csv"}, "--save: what is written is .npy"},
+        {{"random", "--kind", "vf", "--save", directory / "pairs.CSV"}, "--save: what is written is .npy"},
         {{"run", "--kind", "vf"}, "FILE is required"},
         {{"run", none}, "--kind is required"},
         {{"run", none, "--kind", "vf", "--range", "0:1"}, "--range: 0:1 ends beyond the last of 0 pairs"},
@@ -156,12 +156,12 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
     }
 }
 
-/// What is in a file's name reaches no terminal, and an error stays one line.
+/// What is in a file's name drives no terminal by way of an error, and that stays one line.
 TEST(CommandErrors, NamesWithControlCharactersAreSpelledOut)
 {
-    const Outcome file = run({"run", "--kind", "vf", "none\n\x1b[31m\x7f\xc3\xa9.csv"});
+    const Outcome file = run({"run", "--kind", "vf", "none\n\x1b[31m\x7f\xc3\xa9\xc2\x9b.csv"});
     EXPECT_EQ(file.status, 1);
-    EXPECT_EQ(file.error.rfind("fastccd: none\\x0a\\x1b[31m\\x7f\xc3\xa9.csv: cannot be opened", 0), 0U) << file.error;
+    EXPECT_EQ(file.error.rfind("fastccd: none\\x0a\\x1b[31m\\x7f\xc3\xa9\xc2\\x9b.csv: cannot be opened", 0), 0U) << file.error;
     const Outcome word = run({"random", "--kind", "vf", "--\x1bx"});
     EXPECT_EQ(word.status, 2);
     EXPECT_EQ(word.error.rfind("fastccd: not expected: --\\x1bx; see", 0), 0U) << word.error;
@@ -200,6 +200,9 @@ TEST(CommandErrors, InstructionSetsAreListedForcedAndRefused)
     }
     EXPECT_NE(run({"isa"}).out.find(std::string{name(best_isa())}), std::string::npos);
     EXPECT_EQ(run({"isa"}, {"FASTCCD_ISA=mmx"}).status, 2);
+    const Outcome named = run({"random", "--kind", "vf", "--pairs", "1"}, {"FASTCCD_ISA=mmx"});
+    EXPECT_EQ(named.status, 2);
+    EXPECT_NE(named.error.find("available on this machine: 'mmx'; available here: scalar"), std::string::npos) << named.error;
 }
 
 // ---- Streams and signals ----------------------------------------------------------------------------------

@@ -78,6 +78,7 @@ TEST(RationalCsv, LineEndsAndBlanksDoNotMatter)
     expect_plain(parse(join(plain_rows(8), "\r\n")), 1);
     expect_plain(parse(unix_text.substr(0, unix_text.size() - 1)), 1);
     expect_plain(parse(unix_text + "\n \r\n\n"), 1);
+    expect_plain(parse("\xEF\xBB\xBF" + unix_text), 1);
     EXPECT_EQ(parse(with_row(2, " +1 ,\t1, -3 ,4,3 , 2 ")).pairs.at(0, 4), -0.75);
 }
 

@@ -11,6 +11,7 @@ namespace {
 
 volatile std::sig_atomic_t pending_signal = 0;
 timespec first_signal{};
+bool broken_pipes_ignored = false;  // by who started the process
 
 /// A second Ctrl-C ends a process that cannot get to check_interrupt. `timeout` sends a signal to its child and then to the
 /// group, so that the same one comes twice at once: only one that comes later than a finger is meant like that.
@@ -35,6 +36,7 @@ extern "C" void note_signal(int signal)
 
 void end_by(int signal)
 {
+    if (signal == SIGPIPE && broken_pipes_ignored) return;
     struct sigaction action {};
     action.sa_handler = SIG_DFL;
     sigaction(signal, &action, nullptr);
@@ -53,7 +55,7 @@ void install_signal_handlers()
         for (const int other : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&action.sa_mask, other);
         sigaction(signal, &action, nullptr);
     }
-    std::signal(SIGPIPE, SIG_IGN);
+    broken_pipes_ignored = std::signal(SIGPIPE, SIG_IGN) == SIG_IGN;
     std::signal(SIGXFSZ, SIG_IGN);
 }
 

@@ -20,7 +20,7 @@ void install_signal_handlers();
 void check_interrupt();
 
 /// Ends the process by the signal, as if it had never been handled: a shell that runs a loop or a script goes on after a command
-/// that exits upon Ctrl-C, and stops after one that the signal has ended. Returns if the signal is blocked.
+/// that exits upon Ctrl-C, and stops after one that the signal has ended. Returns if the signal is blocked, or was ignored when the process began.
 void end_by(int signal);
 
 }  // namespace fastccd::tools

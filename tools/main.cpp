@@ -48,16 +48,19 @@ void refuse_empty_values(const std::vector<std::string_view>& arguments)
     }
 }
 
-/// One line of text, whatever a file's name holds: line breaks, and what would drive a terminal, are spelled out.
+/// One line of text, whatever a file's name holds: line breaks, and what would drive a terminal, are spelled out. Besides the control
+/// characters of ASCII those are U+0080 to U+009F, in UTF-8 C2 80 to C2 9F.
 std::string on_one_line(std::string_view text)
 {
     std::string line;
+    unsigned char before = 0;
     for (const char c : text) {
         const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte == 0x7f)
+        if (byte < 0x20 || byte == 0x7f || (before == 0xc2 && byte < 0xa0))
             line += fmt::format("\\x{:02x}", byte);
         else
             line += c;
+        before = byte;
     }
     return line;
 }
@@ -87,7 +90,7 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error)
     return fmt::format("fastccd: {}; see `{} --help`\n", on_one_line(what), command);
 }
 
-/// Not left to the exit status alone, see end_by.
+/// The exit status, where the signal cannot end it, see end_by.
 int ended_by(int signal)
 {
     std::cout.flush();

@@ -23,7 +23,7 @@ public:
         while (lines_.next()) {
             std::string_view line = lines_.line();
             std::string_view statement = take_word(line);
-            if (statement.size() == 2 && statement[1] == '\\' && line.empty()) {
+            if (statement.size() == 2 && statement[1] == '\\' && line.empty()) {  // `f\` alone: all of it comes on the next line
                 line = statement.substr(1);
                 statement = statement.substr(0, 1);
             }

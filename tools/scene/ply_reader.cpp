@@ -40,65 +40,58 @@ void skip_property(const PlyProperty& property, Body& body)
     body.skip(property.type, static_cast<std::uint64_t>(count));
 }
 
-// Where x, y, z are among the vertex properties: axis[i] is 0, 1, 2, or 3 for another property.
+// Which of `names`, all needed once, each property of an element is; names.size() for another one. check(property, its name) throws if
+// it has a type that it should not have.
+template <std::size_t count, class Check>
+std::vector<std::size_t> places(const PlyElement& element, const std::array<std::string_view, count>& names, Check check)
+{
+    std::array<int, count> found{};
+    std::vector<std::size_t> places;
+    for (const PlyProperty& property : element.properties) {
+        const auto place = static_cast<std::size_t>(
+            std::find(names.begin(), names.end(), property.name) - names.begin());
+        if (place < count) check(property, names[place]);
+        if (place < count) ++found[place];
+        places.push_back(place);
+    }
+    for (std::size_t place = 0; place < count; ++place) {
+        if (found[place] != 1) {
+            throw MeshError(fmt::format(
+                "the header declares {} property '{}' {} times; each of {} is needed once",
+                element.name, names[place], found[place], fmt::join(names, ", ")));
+        }
+    }
+    return places;
+}
+
 std::vector<std::size_t> position_axes(const PlyElement& vertex)
 {
     constexpr std::array<std::string_view, 3> names{"x", "y", "z"};
-    std::array<int, 3> found{};
-    std::vector<std::size_t> axes;
-    for (const PlyProperty& property : vertex.properties) {
-        const auto axis = static_cast<std::size_t>(
-            std::find(names.begin(), names.end(), property.name) - names.begin());
-        if (axis < 3 && property.count_type)
-            throw MeshError(fmt::format("vertex property '{}' is a list", names[axis]));
-        if (axis < 3) ++found[axis];
-        axes.push_back(axis);
+    return places(vertex, names, [](const PlyProperty& property, std::string_view name) {
+        if (property.count_type) throw MeshError(fmt::format("vertex property '{}' is a list", name));
+    });
+}
+
+// vertex1 and vertex2 are the format's names, v0 and v1 those of some writers. Nothing if there are none of them: then these are edges of
+// another kind.
+std::vector<std::size_t> edge_ends(const PlyElement& edge)
+{
+    for (const auto& names : {std::array<std::string_view, 2>{"vertex1", "vertex2"}, {"v0", "v1"}}) {
+        const bool any = std::any_of(edge.properties.begin(), edge.properties.end(), [&](const PlyProperty& property) {
+            return std::find(names.begin(), names.end(), property.name) != names.end();
+        });
+        if (!any) continue;
+        return places(edge, names, [](const PlyProperty& property, std::string_view name) {
+            if (property.count_type || is_floating(property.type))
+                throw MeshError(fmt::format("edge property '{}' must be an integer", name));
+        });
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (found[axis] != 1) {
-            throw MeshError(fmt::format(
-                "the header declares vertex property '{}' {} times; each of x, y and z is "
-                "needed once",
-                names[axis], found[axis]));
-        }
-    }
-    return axes;
+    return {};
 }
 
 bool is_index_list(const PlyProperty& property)
 {
     return property.name == "vertex_indices" || property.name == "vertex_index";
-}
-
-// Which property of an edge is one of its ends, 2 for another one: as for position_axes. vertex1 and vertex2 are the format's names,
-// v0 and v1 those of some writers. Nothing if there are none: then they are edges of another kind.
-std::vector<std::size_t> edge_ends(const PlyElement& edge)
-{
-    using Names = std::array<std::string_view, 2>;
-    const auto has = [&](std::string_view name) {
-        return std::any_of(edge.properties.begin(), edge.properties.end(), [&](const PlyProperty& property) { return property.name == name; });
-    };
-    const bool any = has("vertex1") || has("vertex2"), any_other = has("v0") || has("v1");
-    if (!any && !any_other) return {};
-    const Names names = any ? Names{"vertex1", "vertex2"} : Names{"v0", "v1"};
-    std::array<int, 2> found{};
-    std::vector<std::size_t> ends;
-    for (const PlyProperty& property : edge.properties) {
-        const auto end = static_cast<std::size_t>(std::find(names.begin(), names.end(), property.name) - names.begin());
-        if (end < 2 && (property.count_type || is_floating(property.type)))
-            throw MeshError(fmt::format("edge property '{}' must be an integer", names[end]));
-        if (end < 2) ++found[end];
-        ends.push_back(end);
-    }
-    for (std::size_t end = 0; end < 2; ++end) {
-        if (found[end] != 1) {
-            throw MeshError(fmt::format(
-                "the header declares edge property '{}' {} times; each of {} and {} is "
-                "needed once",
-                names[end], found[end], names[0], names[1]));
-        }
-    }
-    return ends;
 }
 
 void check_face_properties(const PlyElement& face)
@@ -116,22 +109,28 @@ void check_face_properties(const PlyElement& face)
     }
 }
 
+// All items of an element: read(i, k) reads property k of item i, or returns false, and it is skipped.
+template <class Body, class Read>
+void read_items(const PlyElement& element, Body& body, Read read)
+{
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        body.begin({element.name, i});
+        for (std::size_t k = 0; k < element.properties.size(); ++k)
+            if (!read(i, k)) skip_property(element.properties[k], body);
+        body.end();
+    }
+}
+
 template <class Body>
 std::vector<double> read_vertices(const PlyElement& element, Body& body)
 {
     const std::vector<std::size_t> axes = position_axes(element);
     std::vector<double> positions(3 * static_cast<std::size_t>(element.count));
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-        body.begin({element.name, i});
-        for (std::size_t k = 0; k < axes.size(); ++k) {
-            if (axes[k] < 3) {
-                positions[3 * i + axes[k]] = body.read_real(element.properties[k].type);
-            } else {
-                skip_property(element.properties[k], body);
-            }
-        }
-        body.end();
-    }
+    read_items(element, body, [&](std::uint64_t i, std::size_t k) {
+        if (axes[k] == 3) return false;
+        positions[3 * i + axes[k]] = body.read_real(element.properties[k].type);
+        return true;
+    });
     return positions;
 }
 
@@ -164,35 +163,24 @@ std::vector<std::int32_t> read_faces(const PlyElement& element, std::uint64_t ve
 {
     std::vector<std::int32_t> faces;
     faces.reserve(3 * static_cast<std::size_t>(element.count));
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-        body.begin({element.name, i});
-        for (const PlyProperty& property : element.properties) {
-            if (is_index_list(property)) {
-                read_triangle(property, vertex_count, faces, body);
-            } else {
-                skip_property(property, body);
-            }
-        }
-        body.end();
-    }
+    read_items(element, body, [&](std::uint64_t, std::size_t k) {
+        if (!is_index_list(element.properties[k])) return false;
+        read_triangle(element.properties[k], vertex_count, faces, body);
+        return true;
+    });
     return faces;
 }
 
 template <class Body>
-std::vector<Edge> read_edges(const PlyElement& element, const std::vector<std::size_t>& ends, std::uint64_t vertex_count, Body& body)
+std::vector<Edge> read_edges(const PlyElement& element, std::uint64_t vertex_count, Body& body)
 {
+    const std::vector<std::size_t> ends = edge_ends(element);
     std::vector<Edge> edges(static_cast<std::size_t>(element.count));
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-        body.begin({element.name, i});
-        for (std::size_t k = 0; k < ends.size(); ++k) {
-            if (ends[k] < 2) {
-                edges[i][ends[k]] = read_vertex(element.properties[k].type, vertex_count, body);
-            } else {
-                skip_property(element.properties[k], body);
-            }
-        }
-        body.end();
-    }
+    read_items(element, body, [&](std::uint64_t i, std::size_t k) {
+        if (ends[k] == 2) return false;
+        edges[i][ends[k]] = read_vertex(element.properties[k].type, vertex_count, body);
+        return true;
+    });
     return edges;
 }
 
@@ -200,11 +188,7 @@ template <class Body>
 void skip_element(const PlyElement& element, Body& body)
 {
     if (element.properties.empty()) return;  // nothing in the file, however many there are
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-        body.begin({element.name, i});
-        for (const PlyProperty& property : element.properties) skip_property(property, body);
-        body.end();
-    }
+    read_items(element, body, [](std::uint64_t, std::size_t) { return false; });
 }
 
 template <class Body>
@@ -218,7 +202,7 @@ Mesh read_body(const PlyHeader& header, std::uint64_t vertex_count, Body body)
         } else if (element.name == "face") {
             mesh.faces = read_faces(element, vertex_count, body);
         } else if (element.name == "edge" && !edge_ends(element).empty()) {
-            mesh.lines = read_edges(element, edge_ends(element), vertex_count, body);
+            mesh.lines = read_edges(element, vertex_count, body);
         } else {
             skip_element(element, body);
         }
