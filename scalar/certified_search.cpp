@@ -25,7 +25,7 @@ template <PairKind kind>
 SearchResult search(const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
 {
     const PairPolynomials<kind> pair{coordinates, parameters};
-    SearchResult result{std::numeric_limits<double>::infinity(), Proof::none, 0, 1};
+    SearchResult result{.toi = std::numeric_limits<double>::infinity(), .intervals = 1};
     if (pair.apart()) return result;
 
     LeafSearch<kind> leaves{pair, parameters, lanes};
@@ -35,13 +35,17 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
     result.proof = leaves.proof_of_contact(first);
     if (result.proof != Proof::leaf && leaves.in_doubt(first)) {
         const double apart = apart_until(pair.coefficients(), parameters, first);
-        if (apart > 1.0) return {result.toi, Proof::none, 0, result.intervals};
+        if (apart > 1.0) return {.toi = result.toi, .intervals = result.intervals};
         // What is proven around `first` is not before `apart`, hence no farther from it.
         if (result.proof == Proof::none && apart > first) result.proof = leaves.proof_nearby(apart);
         first = apart;
     }
     result.toi = parameters.time(first);
-    if (parameters.count_roots) result.roots = count_contact_roots(pair, parameters);
+    if (parameters.count_roots) {
+        RootCounter<kind> counter{pair, parameters};
+        result.roots = counter.count();
+        result.root_intervals = counter.intervals();
+    }
     return result;
 }
 
@@ -49,7 +53,7 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
 SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
 {
-    if (!all_finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
+    if (!all_finite(coordinates)) return {.toi = std::numeric_limits<double>::quiet_NaN()};
     return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, lanes)
                                          : search<PairKind::edge_edge>(coordinates, parameters, lanes);
 }

@@ -12,7 +12,8 @@ namespace fastccd::scalar {
 /// Cap on the intervals halved for one pair, far above what any pair of the public data needs. On reaching it those still waiting,
 /// some hundred at most, are examined once. One without a certificate that is wider than a leaf gets `extension` more, and so
 /// do `most_extensions` of them; a leaf, or the first after those, is the answer: contact, with the lower bound reached. So one
-/// pair takes at most 4,096 + 16 * 64 intervals and what waits. Counting roots has 4,096 for itself.
+/// pair takes at most 4,096 + 16 * 64 intervals and what waits. Counting roots has 4,096 for itself, and no number if they are
+/// used up.
 inline constexpr unsigned most_intervals = 4096, extension = 64, most_extensions = 16;
 
 /// What is certain about a contact that is reported.
@@ -23,10 +24,11 @@ enum class Proof : std::uint8_t {
 };
 
 struct SearchResult {
-    double toi;          ///< In [0, t_max]; +infinity: certainly apart; NaN: invalid coordinates.
-    Proof proof;         ///< If there is contact.
-    std::uint8_t roots;  ///< Contact roots, if asked for; 0 if there is no contact or they cannot be counted.
-    unsigned intervals;  ///< Examined on the way, for benchmarks and tests.
+    double toi = 0.0;             ///< In [0, t_max]; +infinity: certainly apart; NaN: invalid coordinates.
+    Proof proof = Proof::none;    ///< If there is contact.
+    std::uint8_t roots = 0;       ///< Contact roots, if asked for; 0 if there is no contact or they cannot be counted.
+    unsigned intervals = 0;       ///< Examined on the way, for benchmarks and tests,
+    unsigned root_intervals = 0;  ///< and to count roots.
 };
 
 /// `coordinates`: 24, in the order of PairView. `lanes`: with a kernel for several intervals the same result, sooner.

@@ -26,8 +26,10 @@ public:
     {
         IntervalStack stack;
         stack.push({0.0, 1.0});
-        for (unsigned intervals = 0; !stack.empty(); ++intervals) {
-            if (intervals == most_intervals) return 0;
+        while (!stack.empty()) {
+            // One cap for these intervals and for the parts of leaves together.
+            leaves.count_interval();
+            if (leaves.intervals() > most_intervals) return 0;
             const Interval i = stack.pop();
             const Cubic<double> f = pair.coplanarity(i);
             const double width = i.b - i.a;
@@ -35,7 +37,7 @@ public:
                 see_sign(f.c0);
             } else if (one_variation(f) && pair.included(i)) {
                 see_sign(f.c0);
-                add_roots(1);
+                ++odd;
             } else if (width > leaf_width && !(flat(f) && width <= widest_flat)) {
                 stack.push_halves(i);
                 continue;
@@ -49,8 +51,14 @@ public:
             see_sign(f.c3);
         }
         if (open) close_cluster(0);
-        return countable ? roots : std::uint8_t{0};
+        // A cubic has three roots: beside two across which its sign changes there is no double one, and of clusters that look like
+        // double roots at most one is. (Odd ones are three at most as well, but for those at the ends of the step.)
+        const unsigned roots = odd + (tangential && odd < 2 ? 2 : 0);
+        return countable && roots <= 3 ? static_cast<std::uint8_t>(roots) : std::uint8_t{0};
     }
+
+    /// Intervals examined.
+    [[nodiscard]] unsigned intervals() const { return leaves.intervals(); }
 
 private:
     /// An interval on which the cubic vanishes within rounding is halved down to this width only: its roots
@@ -77,8 +85,6 @@ private:
         return sign(smallest(f)) == 0 && sign(largest(f)) == 0;
     }
 
-    void add_roots(int more) { roots = static_cast<std::uint8_t>(std::min(roots + more, 255)); }
-
     /// Takes note of the cubic's value at the next time in order; a certain sign ends an open cluster. Until then,
     /// whatever else is found lies at the same multiple root.
     void see_sign(double value)
@@ -92,7 +98,10 @@ private:
     {
         open = false;
         if (before == 0 && after == 0) countable = false;
-        add_roots(before != 0 && before == after ? 2 : 1);
+        if (before != 0 && before == after)
+            tangential = true;
+        else
+            ++odd;
     }
 
     const PairPolynomials<kind>& pair;
@@ -102,13 +111,8 @@ private:
     bool countable = true;
     int before = 0;     ///< Sign of the cubic before the open cluster; 0 if not certain.
     int last_sign = 0;  ///< Its last certain sign.
-    std::uint8_t roots = 0;
+    unsigned odd = 0;   ///< Roots across which the sign changes, or that lie at an end of the step.
+    bool tangential = false;
 };
-
-template <PairKind kind>
-std::uint8_t count_contact_roots(const PairPolynomials<kind>& pair, const SearchParameters& parameters)
-{
-    return RootCounter<kind>{pair, parameters}.count();
-}
 
 }  // namespace fastccd::scalar

@@ -91,6 +91,8 @@ public:
     [[nodiscard]] bool in_doubt(double s) const { return search.intervals >= most_intervals_in_leaf || !pair.well_shaped(s); }
 
     [[nodiscard]] unsigned intervals() const { return search.intervals; }
+    /// One that was examined by someone who shares the cap.
+    void count_interval() { ++search.intervals; }
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;

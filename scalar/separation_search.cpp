@@ -72,8 +72,8 @@ SearchResult walk(SeparationRecord<double>& pair, const SearchParameters& parame
         const StepOutcome<double> outcome = step<kind>(pair, parameters, limit);
         const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds);
         const auto looks = static_cast<unsigned>(pair.looks);
-        if (outcome.farther.value || followed) return {never, Proof::none, 0, looks};
-        if (outcome.contact.value) return {pair.time, outcome.proven.value ? Proof::leaf : Proof::none, 0, looks};
+        if (outcome.farther.value || followed) return {.toi = never, .intervals = looks};
+        if (outcome.contact.value) return {.toi = pair.time, .proof = outcome.proven.value ? Proof::leaf : Proof::none, .intervals = looks};
     }
 }
 
@@ -89,8 +89,8 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     }
     Extents<double> same;
     if (farther_along_axis<kind>(pair.r, parameters.separation, SeparationBounds{parameters.bounds.rho}, same).value)
-        return {never, Proof::none, 0, 0};
-    if (first_look<kind>(pair, parameters).value) return {never, Proof::none, 0, 1};
+        return {.toi = never};
+    if (first_look<kind>(pair, parameters).value) return {.toi = never, .intervals = 1};
     SearchResult result = walk<kind>(pair, parameters, limit);
     if (result.toi <= 1.0) result.toi = parameters.time(result.toi);
     return result;
@@ -130,7 +130,7 @@ double search_on(const PairCoefficients& coefficients, SearchParameters paramete
 
 SearchResult separation_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, double limit)
 {
-    if (!all_finite(coordinates)) return {std::numeric_limits<double>::quiet_NaN(), Proof::none, 0, 0};
+    if (!all_finite(coordinates)) return {.toi = std::numeric_limits<double>::quiet_NaN()};
     return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, limit)
                                          : search<PairKind::edge_edge>(coordinates, parameters, limit);
 }

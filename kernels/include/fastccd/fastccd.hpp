@@ -40,8 +40,8 @@ namespace fastccd {
 /// `roots`, when not empty, has one element per pair and gets the number of roots of the
 /// coplanarity cubic (paper, eq. 5 and 12) in [0, t_max] at which there is contact: 1 where the cubic changes sign, as at a
 /// simple or triple root, 2 at a tangential one, and 1 for whatever lies at t = 0 or t_max, where its sign is known on one side
-/// alone; 0 for no contact and for contacts whose roots cannot be counted (the motion
-/// stays coplanar to within rounding). This is the paper's odd / even distinction (Table 1).
+/// alone; 3 at most. 0 for no contact and for contacts whose roots cannot be counted (the motion stays coplanar to within
+/// rounding, or counting comes to its cap). This is the paper's odd / even distinction (Table 1).
 ///
 /// O(pairs); no allocation that grows with the number of pairs (but for Options::exact).
 FASTCCD_API Status time_of_impact(PairKind kind, const PairView& pairs, const Options& options, std::span<double> toi,
