@@ -25,7 +25,7 @@ inline CheckedSource indexed(const MovingMesh& mesh, const std::int32_t* pairs, 
                              std::size_t first_size)
 {
     if (!mesh.status().ok()) return {{}, mesh.status(), nullptr};
-    if (pairs == nullptr && count > 0) return {{}, {Error::wrong_size}, nullptr};
+    if ((pairs == nullptr && count > 0) || exceeds_memory(count, 2 * sizeof *pairs)) return {{}, {Error::wrong_size}, nullptr};
     return {{nullptr, {mesh.records(), pairs, primitives.data, primitives.row_stride, primitives.column_stride,
                        mesh.vertex_count(), primitives.size, {}}, count},
             check_pairs(pairs, count, first_size, primitives.size), mesh.boxes()};

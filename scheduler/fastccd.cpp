@@ -190,7 +190,7 @@ const char* message(Error error) noexcept
         case Error::none: return "no error";
         case Error::bad_tolerance: return "the tolerance must be a positive finite number";
         case Error::bad_t_max: return "t_max must be greater than 0 and at most 1";
-        case Error::wrong_size: return "an array does not have one element per pair or vertex, or has no data";
+        case Error::wrong_size: return "an array does not have one element per pair or vertex, has no data, or is larger than memory can be";
         case Error::exact_unavailable: return "this build has no exact verdict: it was built without GMP";
         case Error::isa_unavailable: return "the instruction set is not in this build or not on this machine";
         case Error::bad_isa_environment:

@@ -1,8 +1,9 @@
-// Are all indices of the pairs in range?
+// Are all indices of the pairs in range, and can there be as many?
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include <fastccd/options.hpp>
 
@@ -11,6 +12,13 @@ namespace fastccd {
 inline bool in_range(std::int32_t index, std::size_t size)
 {
     return index >= 0 && static_cast<std::size_t>(index) < size;
+}
+
+/// No array of so many elements of so many bytes exists. A negative number that became a std::size_t is the likely reason; sums of
+/// such sizes would wrap around, to nothing to do.
+inline bool exceeds_memory(std::size_t elements, std::size_t bytes)
+{
+    return elements > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / bytes;
 }
 
 /// `pairs`: count pairs of indices; the first of each must be below first_size, the second below second_size.

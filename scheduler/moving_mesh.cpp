@@ -16,7 +16,7 @@ namespace {
 /// First row of `rows` with a vertex that is not below `vertices`, as the error given.
 Status check_rows(const IndexView& rows, int columns, std::size_t vertices, Error error)
 {
-    if (rows.size > 0 && rows.data == nullptr) return {Error::wrong_size};
+    if ((rows.size > 0 && rows.data == nullptr) || exceeds_memory(rows.size, sizeof *rows.data)) return {Error::wrong_size};
     // As in a view whose strides were forgotten: each face would be one vertex.
     if ((rows.size > 0 && rows.column_stride == 0) || (rows.size > 1 && rows.row_stride == 0)) return {Error::wrong_size};
     for (std::size_t row = 0; row < rows.size; ++row)

@@ -8,6 +8,7 @@
 #include <block_source.hpp>
 #include <exact_contact.hpp>
 #include <fastccd/isa.hpp>
+#include <index_check.hpp>
 #include <separation_search.hpp>
 
 namespace fastccd {
@@ -55,7 +56,7 @@ void settle(const Job& job, const double* coordinates, scalar::SearchResult& fou
         found.toi = std::max(found.toi, job.parameters.time(exact.lower_bound));
         found.proof = scalar::Proof::leaf;
     } else {
-        found = {std::numeric_limits<double>::infinity(), scalar::Proof::none, 0, found.intervals};
+        found = {.toi = std::numeric_limits<double>::infinity(), .intervals = found.intervals};
     }
 }
 
@@ -87,7 +88,10 @@ void keep_earlier(Contact& best, const Contact& other)
 
 bool has_data(const PairView& pairs)
 {
-    const std::size_t arrays = pairs.layout() == PairView::Layout::strided ? pair_coordinates : 1;
+    const bool strided = pairs.layout() == PairView::Layout::strided;
+    const std::size_t number = pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
+    if (exceeds_memory(pairs.size(), strided ? number : pair_coordinates * number)) return false;
+    const std::size_t arrays = strided ? pair_coordinates : 1;
     for (std::size_t c = 0; c < arrays; ++c)
         if (pairs.data(c) == nullptr) return false;
     return true;

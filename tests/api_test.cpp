@@ -68,6 +68,31 @@ TEST(Api, RefusesWrongSizes)
     }
 }
 
+TEST(Api, RefusesMorePairsThanMemoryHolds)
+{
+    // Negative numbers of pairs, as sizes. Rounded up to whole tiles some of them would be none.
+    const double pair[24] = {};
+    const float narrow[24] = {};
+    double one = 0.0;
+    std::array<const double*, pair_coordinates> columns{};
+    columns.fill(pair);
+    for (const std::ptrdiff_t negative : {std::ptrdiff_t{-1}, std::ptrdiff_t{-5}, std::ptrdiff_t{-4096}, std::numeric_limits<std::ptrdiff_t>::min()}) {
+        const auto size = static_cast<std::size_t>(negative);
+        for (const PairView& view : {PairView::interleaved(pair, size), PairView::interleaved(narrow, size), PairView::blocked(pair, size),
+                                     PairView::strided(columns, 1, size)}) {
+            EXPECT_EQ(time_of_impact(PairKind::vertex_face, view, {}, {&one, size}).error, Error::wrong_size);
+            std::vector<Contact> contacts;
+            EXPECT_EQ(find_contacts(PairKind::vertex_face, view, {}, contacts).error, Error::wrong_size);
+            Contact earliest{};
+            EXPECT_EQ(earliest_contact(PairKind::edge_edge, view, {}, earliest).error, Error::wrong_size);
+            CollisionFreeStep step;
+            EXPECT_EQ(collision_free_step(view, {}, {}, step).error, Error::wrong_size);
+            EXPECT_EQ(collision_free_step({}, view, {}, step).error, Error::wrong_size);
+            EXPECT_EQ(step.step, 0.0);
+        }
+    }
+}
+
 TEST(Api, RefusesAnIsaThatIsNotThere)
 {
     for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {

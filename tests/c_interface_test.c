@@ -168,6 +168,8 @@ static void test_packed_pairs(void)
     EXPECT(fastccd_pairs_time_of_impact(2, pairs[0], 3, NULL, toi, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
     EXPECT(fastccd_pairs_time_of_impact(FASTCCD_EDGE_EDGE, NULL, 3, NULL, toi, NULL, NULL) == FASTCCD_WRONG_SIZE);
     EXPECT(fastccd_pairs_time_of_impact(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, NULL, NULL, NULL) == FASTCCD_WRONG_SIZE);
+    EXPECT(fastccd_pairs_find_contacts(FASTCCD_EDGE_EDGE, pairs[0], (size_t)-1, NULL, contacts, 2, &found, NULL) == FASTCCD_WRONG_SIZE);
+    EXPECT(fastccd_pairs_time_of_impact(FASTCCD_EDGE_EDGE, pairs[0], (size_t)-5, NULL, toi, roots, NULL) == FASTCCD_WRONG_SIZE);
     EXPECT(fastccd_pairs_find_contacts(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, NULL, 2, &found, NULL) == FASTCCD_BAD_ARGUMENT);
     EXPECT(fastccd_pairs_find_contacts(FASTCCD_EDGE_EDGE, pairs[0], 3, NULL, contacts, 2, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
 }

@@ -334,6 +334,12 @@ TEST(Indexed, MeshesThatAreNotMeshes)
     toi.resize(3);
     EXPECT_EQ(time_of_impact(mesh, std::span<const VertexFace>{static_cast<const VertexFace*>(nullptr), 3}, {}, toi).error, Error::wrong_size);
     EXPECT_EQ(time_of_impact(mesh, std::span<const EdgeEdge>{static_cast<const EdgeEdge*>(nullptr), 3}, {}, toi).error, Error::wrong_size);
+    // Negative numbers, as sizes.
+    const VertexFace pair{0, 0};
+    const std::size_t negative = std::size_t{0} - 1;
+    EXPECT_EQ(time_of_impact(mesh, std::span{&pair, negative}, {}, toi).error, Error::wrong_size);
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), IndexView::rows(faces.data(), negative, 3), {}}).status().error, Error::wrong_size);
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), {}, IndexView::rows(faces.data(), negative, 2)}).status().error, Error::wrong_size);
 }
 
 TEST(Indexed, AMeshThatWasMovedIsNoMeshAnyMore)

@@ -8,8 +8,9 @@
  * error outputs are as they were before, except where a function says otherwise. Pointers marked "or NULL" may be NULL; so may
  * arrays without elements.
  *
- * Structs begin with `size`, sizeof of the struct as the caller knows it. Later versions only append fields; those that
- * the caller does not know have their defaults, so that programs and libraries of different age understand each other.
+ * Structs that may grow begin with `size`, sizeof of the struct as the caller knows it. Later versions only append fields; those
+ * that the caller does not know have their defaults, so that programs and libraries of different age understand each other. The
+ * others, fastccd_contact and fastccd_fault, stay as they are.
  */
 #ifndef FASTCCD_H
 #define FASTCCD_H
@@ -28,7 +29,7 @@ enum fastccd_error {
     FASTCCD_OK = 0,
     FASTCCD_BAD_TOLERANCE = 1,       /* tolerance is not a positive finite number */
     FASTCCD_BAD_T_MAX = 2,           /* t_max is not in (0, 1] */
-    FASTCCD_WRONG_SIZE = 3,          /* an array is NULL but should not be empty */
+    FASTCCD_WRONG_SIZE = 3,          /* an array is NULL but should not be empty, or larger than memory can be */
     FASTCCD_EXACT_UNAVAILABLE = 4,   /* `exact` in a build without GMP */
     FASTCCD_ISA_UNAVAILABLE = 5,     /* the instruction set is not in this build or not on this machine */
     FASTCCD_BAD_ISA_ENVIRONMENT = 6, /* FASTCCD_ISA names no instruction set, or one that is unavailable */

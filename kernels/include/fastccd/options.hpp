@@ -85,7 +85,7 @@ enum class Error : std::uint8_t {
     none,
     bad_tolerance,         ///< tolerance is not a positive finite number.
     bad_t_max,             ///< t_max is not in (0, 1].
-    wrong_size,            ///< an output span does not have one element per pair, or a view is malformed or has no data.
+    wrong_size,            ///< an output span does not have one element per pair, or a view is malformed, has no data or no room in memory.
     exact_unavailable,     ///< options.exact in a build without GMP.
     isa_unavailable,       ///< options.isa is not in this build or not on this machine.
     bad_isa_environment,   ///< FASTCCD_ISA names no instruction set, or one that is unavailable.
