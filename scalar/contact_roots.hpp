@@ -34,21 +34,23 @@ public:
             const Cubic<double> f = pair.coplanarity(i);
             const double width = i.b - i.a;
             if (width < 1.0 && pair.apart(i)) {
-                see_sign(f.c0);
+                see_sign(f.c0, i.a);
+                if (open) look_behind_cluster(i);
             } else if (one_variation(f) && pair.included(i)) {
-                see_sign(f.c0);
+                see_sign(f.c0, i.a);
                 ++odd;
             } else if (width > leaf_width && !(flat(f) && width <= widest_flat)) {
                 stack.push_halves(i);
                 continue;
             } else if (width <= leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
-                see_sign(f.c0);
+                see_sign(f.c0, i.a);
             } else if (!open) {
+                see_sign(f.c0, i.a);
+                look_ahead_of_cluster(i.a);
                 open = true;
-                if (sign(f.c0) != 0) last_sign = sign(f.c0);
                 before = last_sign;
             }
-            see_sign(f.c3);
+            see_sign(f.c3, i.b);
         }
         if (open) close_cluster(0);
         // A cubic has three roots: beside two across which its sign changes there is no double one, and of clusters that look like
@@ -87,11 +89,30 @@ private:
 
     /// Takes note of the cubic's value at the next time in order; a certain sign ends an open cluster. Until then,
     /// whatever else is found lies at the same multiple root.
-    void see_sign(double value)
+    void see_sign(double value, double time)
     {
         if (sign(value) == 0) return;
         last_sign = sign(value);
+        last_time = time;
         if (open) close_cluster(last_sign);
+    }
+
+    /// What is apart may be long, and have roots without contact: beside a cluster its sign is that of the nearest time at which it is
+    /// certain, at distances of a leaf and of twice as much each time after that. Here of the interval after one, `apart`.
+    void look_behind_cluster(Interval apart)
+    {
+        for (double distance = leaf_width; open && distance < apart.width(); distance *= 2) look_at(apart.a + distance);
+    }
+    /// Here before one that begins at `start`.
+    void look_ahead_of_cluster(double start)
+    {
+        const double known = last_time;
+        for (double distance = leaf_width; last_time == known && start - distance > known; distance *= 2) look_at(start - distance);
+    }
+    void look_at(double time)
+    {
+        leaves.count_interval();
+        see_sign(pair.coplanarity({time, time}).c0, time);
     }
 
     void close_cluster(int after)
@@ -109,9 +130,10 @@ private:
     LeafSearch<kind> leaves;
     bool open = false;
     bool countable = true;
-    int before = 0;     ///< Sign of the cubic before the open cluster; 0 if not certain.
-    int last_sign = 0;  ///< Its last certain sign.
-    unsigned odd = 0;   ///< Roots across which the sign changes, or that lie at an end of the step.
+    int before = 0;          ///< Sign of the cubic before the open cluster; 0 if not certain.
+    int last_sign = 0;       ///< Its last certain sign,
+    double last_time = 0.0;  ///< and when.
+    unsigned odd = 0;        ///< Roots across which the sign changes, or that lie at an end of the step.
     bool tangential = false;
 };
 

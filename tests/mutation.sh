@@ -190,6 +190,9 @@ mutant 'range: short steps scaled as if they were whole' scalar/scaling.cpp 's/w
 mutant 'range: both ends halved' scalar/scaling.cpp 's/coordinate > 0x1p1021 \? 4 : 0/4/' extreme_range_test
 mutant 'range: subnormal times rounded up' kernels/search_parameters.hpp 's/product - 0x1p-1073 : 0\.0/product : 0.0/' extreme_range_test
 mutant 'range: ties of subnormal times left out' scheduler/shared_best.hpp 's/memory_order_relaxed\) \+ 0x1p-1072/memory_order_relaxed)/' collision_free_step_test
+mutant 'roots: sign after a cluster from far away' scalar/contact_roots.hpp 's/if \(open\) look_behind_cluster\(i\);//' root_counts_test
+mutant 'roots: sign before a cluster from far away' scalar/contact_roots.hpp 's/look_ahead_of_cluster\(i\.a\);//' root_counts_test
+mutant 'roots: clusters add up' scalar/contact_roots.hpp 's/tangential = true;/odd += 2;/' root_counts_test
 mutant 'range: roots as coarse as times' scalar/contact_roots.hpp 's/widest_leaf = 0x1p-30/widest_leaf = 1/' extreme_range_test
 
 # ---- Area inclusion loosened

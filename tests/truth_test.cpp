@@ -206,32 +206,6 @@ TEST(Truth, RegularContactIsFoundWithinTheTolerance)
     }
 }
 
-TEST(Truth, GrazingContactsKeepTheParityOfTheirRoots)
-{
-    std::vector<oracle::Pair> pairs;
-    std::size_t counted = 0, even = 0;
-    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
-        for (const char* family : {"grazing", "f32_grazing"}) {
-            generate(family, kind, 555, 3000, pairs);
-            for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
-                Options options;
-                options.tolerance = tolerance;
-                const Answer found = answer(kind, interleaved(pairs), options);
-                for (std::size_t i = 0; i < pairs.size(); ++i) {
-                    ASSERT_LE(found.roots[i], 3) << "more than a cubic has: " << lossless(pairs[i]);
-                    if (found.roots[i] == 0) continue;
-                    const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i]);
-                    if (!verdict.contact) continue;  // a near miss, possible
-                    ++counted;
-                    even += found.roots[i] % 2 == 0;
-                    EXPECT_EQ(found.roots[i] % 2, verdict.roots % 2) << tolerance << ": " << lossless(pairs[i]);
-                }
-            }
-        }
-    EXPECT_GT(counted, 10000u);
-    EXPECT_GT(even, 1000u);
-}
-
 TEST(Truth, RootsOfTangentialAndCoplanarContacts)
 {
     // f = det(r1, r2, r3) = 2 (1 - 2t)^2: the face turns about the x axis while it passes over the vertex, so that
