@@ -1,12 +1,5 @@
-# What an embedder relies on: the C interface, exported symbols, the installed package, and the program of the README.
-
-enable_language(C)
-
-add_executable(c_interface_test c_interface_test.c)
-set_target_properties(c_interface_test PROPERTIES C_STANDARD 99 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
-target_compile_options(c_interface_test PRIVATE -Wall -Wextra -pedantic -Werror)
-target_link_libraries(c_interface_test PRIVATE fastccd::shared m)
-add_test(NAME c_interface_test COMMAND c_interface_test)
+# What an embedder relies on: the library unloaded, called from Python, exported symbols, the installed package, and the program of
+# the README.
 
 add_executable(unload_test unload_test.c)
 set_target_properties(unload_test PROPERTIES C_STANDARD 99)

@@ -6,7 +6,7 @@
 test_sanitized_and_fuzz() {
   local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized
   install_packages clang libclang-rt-dev
-  CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
+  CC=clang CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
     -DFASTCCD_FUZZERS=ON -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
   say "testing with sanitizers"
   ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)" --exclude-regex '^(oracle_test|report_test)$'
@@ -30,7 +30,7 @@ fuzz() {
   rm -rf "$work"
   mkdir -p "$work"
   for corpus in "$@"; do cp "$root/tests/fuzz/corpus/$corpus/"* "$work"; done
-  if ! "$fuzzer" "$work" -max_total_time="$seconds" -artifact_prefix="$work-failed-" >"$log" 2>&1; then
+  if ! "$fuzzer" "$work" -max_total_time="$seconds" -artifact_prefix="$work-failed-" >"$log" 2>&1 || ! grep -q DONE "$log"; then
     tail -n 40 "$log" >&2
     echo "the input that failed is $(ls "$work"-failed-* 2>/dev/null)" >&2
     return 1

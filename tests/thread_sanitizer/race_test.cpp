@@ -11,6 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include <fastccd/fastccd.h>
+
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 
@@ -48,15 +50,21 @@ Contact earliest_of(const Answer& answers)
 /// Pairs, packed and as a mesh in which each has vertices of its own, how to ask about them, and what one thread answers.
 class Input {
 public:
-    Input(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Options& how)
-        : packed{to_buffer(pairs)}, options{how}, expected{one_thread_answer(kind, pairs, how)}
+    Input(oracle::Kind kind, const std::vector<oracle::Pair>& made, const Options& how)
+        : pairs{made}, packed{to_buffer(made)}, options{how}, expected{one_thread_answer(kind, made, how)}
     {
-        for (const oracle::Pair& pair : pairs) add(pair);
+        for (const oracle::Pair& pair : made) add(pair);
         const std::size_t n = start_.size();
         mesh = MovingMesh{PositionView::rows(start_[0].data(), n), PositionView::rows(end_[0].data(), n),
                           IndexView::rows(faces_[0].data(), faces_.size(), 3), IndexView::rows(edges_[0].data(), edges_.size(), 2)};
     }
 
+    [[nodiscard]] fastccd_mesh mesh_in_c() const
+    {
+        return {sizeof(fastccd_mesh), start_.size(), start_[0].data(), end_[0].data(), faces_.size(), faces_[0].data(), edges_.size(), edges_[0].data()};
+    }
+
+    std::vector<oracle::Pair> pairs;
     PairBuffer packed;
     MovingMesh mesh;
     std::vector<VertexFace> vertex_face;
@@ -160,6 +168,63 @@ Answers ask_packed(oracle::Kind kind, const Input& input, const Options& options
     return ask_all(input.packed.size(), options, pair_kind(kind), input.packed.view());
 }
 
+/// Half of the threads for each call, so that it works in an arena of its own.
+fastccd_options options_in_c(const Options& options)
+{
+    fastccd_options same;
+    fastccd_options_init(&same, sizeof same);
+    same.isa = static_cast<std::int32_t>(options.isa);
+    same.exact = options.exact;
+    same.threads = 2;
+    return same;
+}
+
+void require_in_c(int error)
+{
+    if (error != FASTCCD_OK) throw std::runtime_error(fastccd_message(error));
+}
+
+/// The C interface about packed pairs and about pairs of a mesh, two calls of one caller each.
+std::array<Answers, 2> ask_in_c(oracle::Kind kind, const Input& input, const Options& asked)
+{
+    const std::size_t size = input.packed.size();
+    const int which = kind == oracle::Kind::vertex_face ? FASTCCD_VERTEX_FACE : FASTCCD_EDGE_EDGE;
+    const fastccd_options options = options_in_c(asked);
+    const double* const interleaved = input.pairs[0][0].data();
+    const fastccd_mesh mesh = input.mesh_in_c();
+    const std::int32_t* const candidates = kind == oracle::Kind::vertex_face ? &input.vertex_face[0].vertex : &input.edge_edge[0].edge_a;
+    std::array<Answers, 2> found;
+    for (const bool packed : {true, false}) {
+        Answers& answers = found[packed ? 0 : 1];
+        answers.toi.resize(size);
+        answers.with_roots.toi.resize(size);
+        answers.with_roots.roots.resize(size);
+        const auto times = [&](double* toi, std::uint8_t* roots) {
+            fastccd_summary summary{};
+            summary.size = sizeof summary;
+            require_in_c(packed ? fastccd_pairs_time_of_impact(which, interleaved, size, &options, toi, roots, &summary)
+                                : fastccd_mesh_time_of_impact(&mesh, which, candidates, size, &options, toi, roots, &summary, nullptr));
+            answers.with_roots.summary.contacts = summary.contacts;
+        };
+        times(answers.toi.data(), nullptr);
+        times(answers.with_roots.toi.data(), answers.with_roots.roots.data());
+        for (std::size_t i = 0; i < size; ++i)
+            if (std::isnan(answers.toi[i])) answers.invalid.push_back(i);
+
+        std::vector<fastccd_contact> contacts(size);
+        std::size_t count = 0;
+        require_in_c(packed ? fastccd_pairs_find_contacts(which, interleaved, size, &options, contacts.data(), size, &count, nullptr)
+                            : fastccd_mesh_find_contacts(&mesh, which, candidates, size, &options, contacts.data(), size, &count, nullptr, nullptr));
+        contacts.resize(count);
+        for (const fastccd_contact& contact : contacts) answers.contacts.push_back({contact.pair, contact.toi, contact.proven != 0, false});
+        fastccd_contact earliest{};
+        require_in_c(packed ? fastccd_pairs_earliest_contact(which, interleaved, size, &options, &earliest, nullptr)
+                            : fastccd_mesh_earliest_contact(&mesh, which, candidates, size, &options, &earliest, nullptr, nullptr));
+        answers.earliest = {earliest.pair, earliest.toi, earliest.proven != 0, false};
+    }
+    return found;
+}
+
 Answers ask_indexed(oracle::Kind kind, const Input& input, const Options& options)
 {
     const std::size_t size = input.packed.size();
@@ -242,6 +307,15 @@ TEST_P(Races, SeveralCallersAtOnce)
     }
 }
 
+TEST_P(Races, SeveralCallersInCAtOnce)
+{
+    const Input& input = inputs(GetParam())[0];
+    std::array<std::array<Answers, 2>, callers> found;
+    ask_at_once([&](std::size_t caller) { found[caller] = ask_in_c(GetParam(), input, input.options); });
+    for (const auto& of_caller : found)
+        for (const Answers& answers : of_caller) expect_right(input, answers);
+}
+
 TEST_P(Races, CallersWhoMakeTheBoxesOfAMeshAtOnce)
 {
     // One triangle a vertex, all of them far from all others, but for pairs of a triangle with itself: contact at time 0.
@@ -301,6 +375,29 @@ TEST(CollisionFreeStep, OverBothKinds)
             EXPECT_EQ(found[caller].kind, expected.kind);
             EXPECT_EQ(found[caller].pair, expected.pair);
         }
+    }
+}
+
+TEST(CollisionFreeStep, InC)
+{
+    // All in contact, hence without an error.
+    const Input &faces = inputs(oracle::Kind::vertex_face)[2], &edges = inputs(oracle::Kind::edge_edge)[2];
+    const CollisionFreeStep expected = step_of(faces, edges);
+    const fastccd_options options = options_in_c({});
+    const fastccd_mesh mesh = faces.mesh_in_c();
+    std::array<fastccd_step, callers> packed{}, indexed{};
+    ask_at_once([&](std::size_t caller) {
+        packed[caller].size = indexed[caller].size = sizeof(fastccd_step);
+        require_in_c(fastccd_pairs_collision_free_step(faces.pairs[0][0].data(), faces.pairs.size(), edges.pairs[0][0].data(),
+                                                       edges.pairs.size(), &options, &packed[caller], nullptr));
+        require_in_c(fastccd_mesh_collision_free_step(&mesh, &faces.vertex_face[0].vertex, faces.vertex_face.size(), nullptr, 0, &options,
+                                                      &indexed[caller], nullptr));
+    });
+    for (std::size_t caller = 0; caller < callers; ++caller) {
+        EXPECT_EQ(packed[caller].step, expected.step);
+        EXPECT_EQ(packed[caller].pair, expected.pair);
+        EXPECT_EQ(indexed[caller].pair, earliest_of(faces.expected).pair);
+        EXPECT_EQ(indexed[caller].step, earliest_of(faces.expected).toi);
     }
 }
 
