@@ -178,6 +178,14 @@ TEST_P(Adapter, WhatCannotBeAnsweredIsAnError)
 INSTANTIATE_TEST_SUITE_P(TightInclusion, Adapter, ::testing::Values(&ask_tight_inclusion));
 INSTANTIATE_TEST_SUITE_P(IpcToolkit, Adapter, ::testing::Values(&ask_ipc_toolkit));
 
+TEST(Adapters, DisplacementOfPointsFartherApartThanDoublesReach)
+{
+    const double far = 1.7e308;
+    const Vector3d from{far, 0, 0}, to{far, 0, 1}, left{-far, 0, 0}, below{-far, -far, 0}, above{-far, far, 0};
+    const adapters::MovingPair pair{from, left, below, above, to, left, below, above};
+    EXPECT_EQ(pair.largest_displacement(PairKind::vertex_face), 1.0);
+}
+
 TEST(IpcToolkit, PointsAndEdgesInSpaceAndInThePlane)
 {
     const NarrowPhaseCCD ccd;

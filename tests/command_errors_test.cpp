@@ -100,6 +100,14 @@ TEST(CommandErrors, HitsReplaceAFileOnlyWhenComplete)
     EXPECT_EQ(read_text(directory / "new.csv"), read_text(hits));
     EXPECT_TRUE(std::filesystem::is_symlink(directory / "ahead.csv"));
 
+    // Links in a circle lead nowhere ever.
+    std::filesystem::create_symlink("b.csv", directory / "a.csv");
+    std::filesystem::create_symlink("a.csv", directory / "b.csv");
+    const Outcome circle = run({"random", "--kind", "vf", "--pairs", "100", "--hits", directory / "a.csv"});
+    EXPECT_EQ(circle.status, 1);
+    EXPECT_NE(circle.error.find("a.csv"), std::string::npos) << circle.error;
+    EXPECT_TRUE(std::filesystem::is_symlink(directory / "a.csv"));
+
     const std::string longest = directory / std::string(255, 'x');
     EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "100", "--hits", longest}).status, 0);
     EXPECT_EQ(read_text(longest), read_text(hits));

@@ -184,6 +184,9 @@ TEST(MeshIo, ObjStatementsGoOnAfterABackslash)
     EXPECT_EQ(comments.faces, (std::vector<std::int32_t>{0, 1, 2, 2, 1, 0}));
     EXPECT_EQ(comments.lines, (std::vector<Edge>{{0, 1}}));
     EXPECT_EQ(parse_obj("v 0 0 0\nv 1 0 0\nl 1 2 \\").lines, (std::vector<Edge>{{0, 1}})) << "nothing comes after the last one";
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    EXPECT_EQ(parse_obj(vertices + "g a \\\nf 3 2 1\nf 1 2 3\nvn 0 \\\nf \\\n0\n").faces, triangle_faces) << "nor is what goes on a face";
+    EXPECT_EQ(parse_obj(vertices + "\\\nf 1 2 3\n").faces, triangle_faces) << "of nothing, the next line";
 }
 
 /// Of rods and hair, alone or beside faces.

@@ -112,6 +112,7 @@ OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
 
     struct stat existing {};
     const bool exists = ::stat(target_.c_str(), &existing) == 0;
+    if (!exists && errno == ELOOP) fail(target_, "cannot be created", errno);
     if (exists && S_ISDIR(existing.st_mode)) throw InputError(target_, "is a directory; name a file to write");
     if (exists && !S_ISREG(existing.st_mode)) {
         descriptor_ = open_in_place(target_);

@@ -21,19 +21,15 @@ public:
     Mesh parse()
     {
         while (lines_.next()) {
-            std::string_view line = lines_.line();
-            std::string_view statement = take_word(line);
-            if (statement.size() == 2 && statement[1] == '\\' && line.empty()) {  // `f\` alone: all of it comes on the next line
-                line = statement.substr(1);
-                statement = statement.substr(0, 1);
-            }
             first_line_ = lines_.number();
+            std::string_view line = whole_statement(lines_.line());
+            const std::string_view statement = take_word(line);
             if (statement == "v") {
-                add_vertex(whole_statement(line));
+                add_vertex(line);
             } else if (statement == "f") {
-                add_face(whole_statement(line));
+                add_face(line);
             } else if (statement == "l") {
-                add_line(whole_statement(line));
+                add_line(line);
             }
         }
         check_forward_reference();
@@ -55,7 +51,7 @@ private:
         return true;
     }
 
-    // A backslash at its end continues a line on the next one.
+    // A backslash at its end continues a line on the next one, of statements that are skipped, too: what comes after one is no face.
     std::string_view whole_statement(std::string_view line)
     {
         if (!goes_on(line)) return line;

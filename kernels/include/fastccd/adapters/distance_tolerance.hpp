@@ -44,11 +44,13 @@ struct MovingPair {
     }
 
 private:
+    /// From quarters, of which four add up without overflow, and to no NaN.
     [[nodiscard]] double displacement(int i, int j) const
     {
         double d[3];
-        for (std::size_t axis = 0; axis < 3; ++axis) d[axis] = (x1[i][axis] - x1[j][axis]) - (x0[i][axis] - x0[j][axis]);
-        return std::hypot(d[0], d[1], d[2]);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            d[axis] = (0.25 * x1[i][axis] - 0.25 * x1[j][axis]) - (0.25 * x0[i][axis] - 0.25 * x0[j][axis]);
+        return 4.0 * std::hypot(d[0], d[1], d[2]);
     }
 };
 
