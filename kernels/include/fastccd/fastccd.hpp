@@ -3,9 +3,9 @@
 //
 // Promise, for every pair with finite coordinates, rounding included: no contact in [0, t_max] is
 // missed; `toi` is never after the exact first contact; at `toi` a reported pair is within the distance given in the
-// README (Accuracy); a pair certifiably apart at t = 0 gets toi > 0 (but for times below 2^-1071); the same bits on every
-// instruction set, layout and thread count; bounded work per pair. A pair with a NaN or an infinity gets toi = NaN, the
-// others are answered.
+// README (Accuracy); a pair apart at t = 0 by more than rounding hides (the part of that distance without E_tol) gets toi > 0 (but for
+// times below 2^-1071); the same bits on every instruction set, layout and thread count; bounded work per pair. A pair with a NaN or
+// an infinity gets toi = NaN, the others are answered.
 //
 // All functions may be called from any number of threads at once, also with one MovingMesh, run in the caller's oneTBB arena,
 // throw nothing and print nothing: what goes wrong is in the Status. Times are in units of the step, coordinates in
