@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <pty.h>
+#include <unistd.h>
 
 #include <fastccd/isa.hpp>
 
@@ -111,6 +113,29 @@ TEST(CommandErrors, HitsReplaceAFileOnlyWhenComplete)
     const std::string longest = directory / std::string(255, 'x');
     EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "100", "--hits", longest}).status, 0);
     EXPECT_EQ(read_text(longest), read_text(hits));
+}
+
+/// Whether files in this folder can have room before they are written.
+bool can_reserve(const std::string& file)
+{
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT, 0600);
+    const bool can = descriptor >= 0 && ::fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, 4096) == 0;
+    ::close(descriptor);
+    ::unlink(file.c_str());
+    return can;
+}
+
+TEST(CommandErrors, WhatHasNoRoomIsRefusedBeforeItIsWritten)
+{
+    const ScratchDirectory directory;
+    std::vector<std::string> numbers{"144115188075855872"};  // of pairs: more than the largest file there can be
+    if (can_reserve(directory / "probe")) numbers.emplace_back("9999999999999");  // two petabytes
+    for (const std::string& pairs : numbers) {
+        const Outcome outcome = run({"random", "--kind", "vf", "--pairs", pairs, "--save", directory / "pairs.npy"});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_NE(outcome.error.find("pairs.npy: cannot be written"), std::string::npos) << outcome.error;
+        EXPECT_EQ(directory.names().size(), 0U);
+    }
 }
 
 // ---- Command line -----------------------------------------------------------------------------------------

@@ -121,7 +121,7 @@ TEST(Command, ZeroPairsAreFine)
         Arguments all = arguments;
         all.insert(all.end(), {"--kind", "ee", "--parity", "--hits", directory / "hits.csv"});
         const Json report = run_json(all);
-        for (const char* key : {"pairs", "contacts", "odd", "even", "invalid", "pairs_per_second", "scalar_pairs"}) {
+        for (const char* key : {"pairs", "contacts", "odd", "even", "uncounted", "invalid", "pairs_per_second", "scalar_pairs"}) {
             EXPECT_EQ(report[key], 0) << key;
         }
         EXPECT_EQ(report["earliest"], nullptr);
@@ -158,6 +158,20 @@ TEST(Command, InvalidPairsAreNamedAndTheOthersAnswered)
     EXPECT_EQ(Json::parse(json.out)["contacts"], 26);
     EXPECT_EQ(Json::parse(json.out)["invalid_pairs"].size(), 10U);
     EXPECT_EQ(json.error, "fastccd: warning: " + named + "\n");
+}
+
+TEST(Command, PairsOfSeveralFilesAreNamedWithTheirFile)
+{
+    const ScratchDirectory directory;
+    const std::vector<double> apart = falling_vertex(1, 2);
+    std::vector<double> invalid = apart;
+    invalid[7] = std::numeric_limits<double>::quiet_NaN();
+    const std::string first = directory / "first.npy", second = directory / "second.npy";
+    write_npy(first, buffer({apart, invalid, apart}), PairView::Layout::interleaved);
+    write_npy(second, buffer({invalid, falling_vertex(1, -1)}), PairView::Layout::interleaved);
+    const Outcome text = run({"run", first, second, "--kind", "vf", "--range", "1:"});
+    EXPECT_NE(text.out.find("NaN or infinity in pairs 1 (1 of " + first + "), 3 (0 of " + second + ")"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find(" in pair 4 (1 of " + second + ")\n"), std::string::npos) << text.out;
 }
 
 TEST(Command, ComparesWithTruth)

@@ -258,6 +258,23 @@ TEST(Report, MarksBrokenPromises)
     EXPECT_NE(read_text((directory / "page") + "/hard_cases.svg").find("class=\"wrong\""), std::string::npos);
 }
 
+/// Of a report that came from elsewhere.
+TEST(Report, StringsAreTextOnThePage)
+{
+    const ScratchDirectory directory;
+    const std::string markup = "\"><script>alert(1)</script>";
+    Json altered = report().json;
+    altered["machine"]["system"] = altered["machine"]["best_isa"] = altered["machine"]["commit"] = markup;
+    for (const char* part : {"paper_table", "hard_cases", "scenes", "scaling"}) altered[part]["isa"] = markup;
+    altered["scenes"]["paper"][0]["name"] = altered["scenes"]["scenes"][0]["name"] = altered["hard_cases"]["sets"][0]["name"] = markup;
+    for (const char* kind : {"vf", "ee"}) altered["speed_and_error"][kind]["points"][0]["isa"] = markup;
+    ASSERT_EQ(run({"report", "--draw", directory.write("altered.json", altered.dump()), "--out", directory / "page"}).status, 0);
+    for (const std::string& name : files_in(directory / "page")) {
+        if (name.ends_with(".json")) continue;
+        EXPECT_EQ(read_text((directory / "page") + "/" + name).find("<script"), std::string::npos) << name;
+    }
+}
+
 /// As of a scene that has no candidates of a kind, or of what was too short for the clock.
 void remove_rates(Json& json)
 {
@@ -332,6 +349,11 @@ TEST(Report, NamesWhatIsWrong)
     expect({"report", "--draw", file, "--out", directory / "out"}, 1, "is no report.json");
     expect({"report", "--draw", directory.write("text.json", "{\"format\": \"1\"}"), "--out", directory / "out"}, 1, "text.json: is no report.json");
     expect({"report", "--out", ""}, 2, "--out: the value is empty");
+    for (const Arguments& measuring : {Arguments{"--quick"}, Arguments{"--pairs", "5"}, Arguments{"--data", directory / "."}}) {
+        Arguments arguments{"report", "--draw", file, "--out", directory / "out"};
+        arguments.insert(arguments.end(), measuring.begin(), measuring.end());
+        expect(arguments, 2, measuring[0]);
+    }
     expect({"report", "--draw", directory.write("half.json", "{\"format\": 1}"), "--out", directory / "out"}, 1, "half.json");
     EXPECT_EQ(directory.names().size(), 3u);
 }

@@ -35,6 +35,7 @@ void add_report_command(CLI::App& app)
     command->add_flag("--quiet", options->quiet, "No progress bar, and nothing on standard output");
     command->add_option("--draw", options->draw, "Measure nothing: draw page and pictures again from an earlier\nreport.json")
         ->check(CLI::ExistingFile)
+        ->excludes("--pairs", "--data", "--quick")
         ->type_name("FILE");
     command->callback([options] {
         report::write_report(*options);

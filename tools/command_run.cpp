@@ -33,7 +33,7 @@ void run_command(const RunOptions& options)
     std::string source = options.files.size() == 1 ? options.files.front()
                                                    : fmt::format("{} files, {} to {}", options.files.size(),
                                                                  options.files.front(), options.files.back());
-    Question question{.source = std::move(source), .pairs = range.size(), .files = options.files};
+    Question question{.source = std::move(source), .pairs = range.size(), .files = options.files, .first_pairs = files.first_pairs()};
     if (!options.range.empty()) {
         question.range = range;
         question.source += fmt::format(", pairs {}:{} of {}", range.begin, range.end, with_commas(files.size()));

@@ -52,6 +52,7 @@ struct Question {
     std::string source;                  ///< The pairs' origin, for people: "10 random pairs, seed 1".
     std::size_t pairs = 0;               ///< How many pairs run_narrow_phase is going to answer.
     std::vector<std::string> files = {};
+    std::vector<std::size_t> first_pairs = {};  ///< Of each file, the number of its first pair.
     std::optional<std::uint64_t> seed = {};
     std::optional<PairRange> range = {};  ///< Given when not all pairs of the files were asked for.
 };

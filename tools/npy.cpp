@@ -281,7 +281,13 @@ NpyWriter::NpyWriter(const std::filesystem::path& path, PairView::Layout layout,
         throw std::logic_error("blocks of a .npy file hold 8 pairs each");
     }
     if (!pairs && file_.is_in_place()) throw InputError(path, "is no regular file, into which the number of pairs can be put in the end");
-    file_.write(npy_header(layout, pairs.value_or(0)));
+    const std::string header = npy_header(layout, pairs.value_or(0));
+    constexpr std::uint64_t bytes_per_pair = pair_coordinates * sizeof(double);
+    if (pairs) {
+        constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+        file_.reserve(*pairs > (most - header.size()) / bytes_per_pair ? most : header.size() + *pairs * bytes_per_pair);
+    }
+    file_.write(header);
 }
 
 void NpyWriter::append(const PairView& pairs)

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -142,6 +143,17 @@ OutputFile::~OutputFile()
 {
     if (descriptor_ >= 0) ::close(descriptor_);
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::reserve(std::uint64_t bytes) const
+{
+    if (is_in_place()) return;
+    if (bytes > static_cast<std::uint64_t>(std::numeric_limits<off_t>::max())) fail(target_, "cannot be written", EFBIG);
+    while (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) != 0) {
+        if (errno == ENOSPC || errno == EDQUOT || errno == EFBIG) fail(target_, "cannot be written", errno);
+        if (errno != EINTR) return;  // no file system that can tell
+        check_interrupt();
+    }
 }
 
 void OutputFile::rewrite(std::size_t offset, std::string_view bytes) const

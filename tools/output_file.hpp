@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -28,6 +29,9 @@ public:
 
     /// True if `target` names standard output.
     [[nodiscard]] static bool is_standard_output(const std::filesystem::path& target);
+
+    /// So many bytes are going to be written. Throws InputError if it is certain that there is no room for them.
+    void reserve(std::uint64_t bytes) const;
 
     /// Appends, unbuffered: pass large pieces. Throws as write_all.
     void write(std::string_view bytes) const { write_all(descriptor_, bytes, target_); }

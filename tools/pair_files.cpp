@@ -68,6 +68,13 @@ PairFiles::PairFiles(const std::vector<std::string>& paths, Rounding rounding)
 
 PairFiles::~PairFiles() = default;
 
+std::vector<std::size_t> PairFiles::first_pairs() const
+{
+    std::vector<std::size_t> numbers;
+    for (const File& file : files_) numbers.push_back(file.first_pair);
+    return numbers;
+}
+
 void PairFiles::for_each_chunk(const PairRange& range, std::size_t chunk, const Visitor& visit) const
 {
     for (const File& file : files_) {

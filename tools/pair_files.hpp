@@ -27,6 +27,9 @@ public:
     /// Number of pairs in all files.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
+    /// Of each file, the number of its first pair.
+    [[nodiscard]] std::vector<std::size_t> first_pairs() const;
+
     /// Called with some pairs, the number of the first of them, and their truth or nothing.
     using Visitor = std::function<void(const PairView&, std::size_t, std::span<const std::int8_t>)>;
 

@@ -1,9 +1,9 @@
 #include "report_totals.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -25,11 +25,21 @@ std::string share(std::size_t part, std::size_t whole)
     return whole == 0 ? "" : fmt::format("  ({:.3g} %)", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
-std::string invalid_pairs(const Totals& totals)
+/// Its number; of several files also which, and its number there.
+std::string pair_name(const Question& question, std::size_t pair)
+{
+    if (question.first_pairs.size() < 2) return std::to_string(pair);
+    const auto after = std::upper_bound(question.first_pairs.begin(), question.first_pairs.end(), pair);
+    const auto file = static_cast<std::size_t>(after - question.first_pairs.begin()) - 1;
+    return fmt::format("{} ({} of {})", pair, pair - question.first_pairs[file], question.files[file]);
+}
+
+std::string invalid_pairs(const Question& question, const Totals& totals)
 {
     const std::size_t more = totals.summary.invalid - totals.first_invalid.size();
-    std::string text = fmt::format("NaN or infinity in pair{} {}", totals.summary.invalid == 1 ? "" : "s",
-                                   fmt::join(totals.first_invalid, ", "));
+    std::string text = fmt::format("NaN or infinity in pair{} ", totals.summary.invalid == 1 ? "" : "s");
+    for (std::size_t i = 0; i < totals.first_invalid.size(); ++i)
+        text += (i == 0 ? "" : ", ") + pair_name(question, totals.first_invalid[i]);
     if (more > 0) text += fmt::format(" and {} more, which --hits lists", with_commas(more));
     return text;
 }
@@ -70,14 +80,14 @@ std::string text_report(const PairOptions& options, const Question& question, co
         line("  uncounted", with_commas(sum.contacts - sum.odd - sum.even));
     }
     if (sum.contacts > 0) {
-        line("earliest", fmt::format("toi {:.17g} in pair {}", sum.earliest.toi, sum.earliest.pair));
+        line("earliest", fmt::format("toi {:.17g} in pair {}", sum.earliest.toi, pair_name(question, sum.earliest.pair)));
     }
     if (totals.truth) {
         line("missed", fmt::format("{} of {} pairs with a known answer{}", with_commas(totals.truth->missed),
                                    with_commas(totals.truth->pairs), totals.truth->missed > 0 ? "; is --kind right?" : ""));
         line("false alarms", with_commas(totals.truth->false_alarms));
     }
-    line("invalid", sum.invalid == 0 ? "0" : fmt::format("{}  ({})", with_commas(sum.invalid), invalid_pairs(totals)));
+    line("invalid", sum.invalid == 0 ? "0" : fmt::format("{}  ({})", with_commas(sum.invalid), invalid_pairs(question, totals)));
     line("certified search", fmt::format("{} pairs{}", with_commas(sum.scalar_pairs), share(sum.scalar_pairs, sum.pairs)));
     line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {} thread{})", totals.seconds,
                                      pairs_per_second(totals) * 1e-6, name(sum.isa), totals.threads,
@@ -101,6 +111,7 @@ std::string json_report(const PairOptions& options, const Question& question, co
     json["at_start"] = sum.at_start;
     json["odd"] = options.parity ? Json(sum.odd) : Json(nullptr);
     json["even"] = options.parity ? Json(sum.even) : Json(nullptr);
+    json["uncounted"] = options.parity ? Json(sum.contacts - sum.odd - sum.even) : Json(nullptr);
     json["invalid"] = sum.invalid;
     json["invalid_pairs"] = totals.first_invalid;
     json["earliest"] = sum.contacts > 0 ? Json{{"toi", sum.earliest.toi}, {"pair", sum.earliest.pair}} : Json(nullptr);
@@ -133,7 +144,7 @@ void print_report(const PairOptions& options, const Question& question, const To
     if (options.json) write_all(descriptor, json_report(options, question, totals), stream);
     if (text) write_all(descriptor, text_report(options, question, totals), stream);
     if (!text && totals.summary.invalid > 0) {
-        write_all(STDERR_FILENO, fmt::format("fastccd: warning: {}\n", invalid_pairs(totals)), "standard error");
+        write_all(STDERR_FILENO, fmt::format("fastccd: warning: {}\n", invalid_pairs(question, totals)), "standard error");
     }
 }
 

@@ -11,8 +11,8 @@ namespace fastccd::tools {
 /// Lines of text, aligned, newline at the end.
 [[nodiscard]] std::string text_report(const PairOptions& options, const Question& question, const Totals& totals);
 
-/// One JSON object on one line, newline at the end. Numbers are finite; what was not asked for (odd
-/// and even without --parity) or does not exist (earliest without contacts) is null.
+/// One JSON object on one line, newline at the end. Numbers are finite; what was not asked for (odd,
+/// even and uncounted without --parity) or does not exist (earliest without contacts) is null.
 [[nodiscard]] std::string json_report(const PairOptions& options, const Question& question, const Totals& totals);
 
 /// Prints the report that `options` ask for on standard output, or on standard error if --hits

@@ -67,6 +67,9 @@ std::string details(const std::string& summary, const std::string& content)
 
 std::string percent(double part, double whole) { return whole == 0 ? "-" : fmt::format("{:.2g} %", 100 * part / whole); }
 
+/// Of a table or of a point in it.
+std::string isa_of(const Json& measured) { return escaped(isa_label(measured.at("isa"))); }
+
 std::string early(const Json& comparison, const char* percentile)
 {
     return comparison.at("signed_error").is_null() ? "-" : figure(-comparison.at("signed_error").at(percentile).get<double>());
@@ -76,7 +79,7 @@ std::string early(const Json& comparison, const char* percentile)
 
 std::string paper_tables(const Json& part)
 {
-    const std::string isa = isa_label(part.at("isa"));
+    const std::string isa = isa_of(part);
     Table vf{fmt::format("Table 1 of the paper: {} random vertex-face pairs (the paper: {}), {}, roots counted. σ: distance "
                          "from the paper's "
                          "count, scaled to as many pairs, in standard deviations of the difference of two such samples.",
@@ -118,9 +121,9 @@ std::string speed_error_tables(const Json& part, const std::string& kind)
             kind_label(kind), count(part.at("timed_pairs")), count(part.at("truth_pairs"))),
         {"", "E_tol", "M pairs/s", "early, median", "99 %", "worst", "contacts", "missed", "late", "false alarms"}};
     for (const Json& point : points) {
-        all.row(fmt::format("data-judged=\"{} {} {:g}\"", kind, point.at("isa").get<std::string>(),
+        all.row(fmt::format("data-judged=\"{} {} {:g}\"", kind, escaped(point.at("isa").get<std::string>()),
                             point.at("tolerance").get<double>()));
-        all.cell(isa_label(point.at("isa"))).cell(figure(point.at("tolerance"))).speed(point.at("timing"));
+        all.cell(isa_of(point)).cell(figure(point.at("tolerance"))).speed(point.at("timing"));
         all.cell(early(point, "median")).cell(early(point, "p1")).cell(early(point, "earliest"));
         all.cell(count(point.at("contacts"))).judged(point, false);
     }
@@ -150,7 +153,7 @@ std::string hard_case_table(const Json& part)
     Table table{fmt::format("E_tol {:g}, one thread, {}. First without, then with the exact verdict. Intervals: examined by "
                             "the certified search "
                             "of a pair, which stops at {}.",
-                            part.at("tolerance").get<double>(), isa_label(part.at("isa")), count(part.at("most_intervals"))),
+                            part.at("tolerance").get<double>(), isa_of(part), count(part.at("most_intervals"))),
                 {"set", "", "pairs", "contacts", "missed", "late", "false alarms", "worst early", "ns/pair", "intervals, mean",
                  "most"}};
     for (const Json& set : part.at("sets")) {
@@ -179,7 +182,7 @@ std::string scene_tables(const Json& part)
         fmt::format(
             "All steps of each scene; {}, {} threads, E_tol {:g}. Degenerate: all coefficients of the cubic are zero to within "
             "rounding; no t³: that one is (the paper's ZeroA). Seconds: the sum over the steps of median times.",
-            isa_label(part.at("isa")), part.at("threads").get<int>(), part.at("tolerance").get<double>()),
+            isa_of(part), part.at("threads").get<int>(), part.at("tolerance").get<double>()),
         {"scene", "steps", "kind", "candidates", "contacts", "proven", "degenerate", "no t³", "broad phase, s",
          "narrow phase, s", "M pairs/s"}};
     Table steps{"Step by step; small: spread.",
@@ -223,7 +226,7 @@ std::string scene_tables(const Json& part)
                 speeds.row()
                     .cell(name)
                     .cell(kind)
-                    .cell(isa_label(point.at("isa")))
+                    .cell(isa_of(point))
                     .cell(count(point.at("threads")))
                     .speed(point.at("timing"));
             }
@@ -232,7 +235,7 @@ std::string scene_tables(const Json& part)
     for (const Json& scene : part.at("paper")) {
         const double candidates = scene.at("candidates"), seconds = scene.at("seconds");
         sums.row("class=\"paper\"")
-            .cell("paper: " + scene.at("name").get<std::string>())
+            .cell("paper: " + escaped(scene.at("name").get<std::string>()))
             .cell(count(scene.at("frames")))
             .cell("vf");
         sums.cell(count(scene.at("candidates")))
@@ -251,7 +254,7 @@ std::string scene_tables(const Json& part)
 std::string scaling_tables(const Json& part)
 {
     Table threads{fmt::format("{}; random vertex-face pairs packed, edge-edge candidates of the cloth indexed; small: spread.",
-                              isa_label(part.at("isa"))),
+                              isa_of(part)),
                   {"threads", "random, M pairs/s", "times one thread", "cloth, M pairs/s", "times one thread"}};
     const Json &random = part.at("over_threads").at("random_vf").at("points"),
                &cloth = part.at("over_threads").at("cloth_ee_indexed").at("points");
