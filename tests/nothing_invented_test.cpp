@@ -261,6 +261,33 @@ TEST(NothingInvented, FoundByHillClimbing)
     EXPECT_GT(worst.beyond, 0.1 * thin_bound) << "no longer the worst: another is to be looked for";
 }
 
+/// Leaves without a certificate are searched on below E_tol: what is near within E_tol alone is not reported.
+TEST(NothingInvented, VerdictsDoNotDependOnTheTolerance)
+{
+    std::vector<oracle::Pair> pairs;
+    std::size_t contacts = 0, different = 0;
+    for (const auto kind : kinds)
+        for (const std::string& family : families()) {
+            generate(family, kind, 25, 300, pairs);
+            Options fine;
+            fine.tolerance = 1e-12;
+            const Answer expected = answer(kind, interleaved(pairs), fine);
+            contacts += expected.summary.contacts;
+            for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-9}) {
+                Options options;
+                options.tolerance = tolerance;
+                const Answer found = answer(kind, interleaved(pairs), options);
+                for (std::size_t i = 0; i < pairs.size(); ++i)
+                    if ((found.toi[i] <= 1.0) != (expected.toi[i] <= 1.0)) {
+                        ++different;
+                        ADD_FAILURE() << family << " E_tol " << tolerance << ": " << lossless(pairs[i]);
+                    }
+            }
+        }
+    std::printf("%zu contacts, %zu different verdicts\n", contacts, different);
+    EXPECT_GT(contacts, 1000u);
+}
+
 TEST(NothingInvented, PublicData)
 {
     const auto data = data_directory();
