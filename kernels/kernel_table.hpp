@@ -85,6 +85,10 @@ struct TileScratch {
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
+    /// Bit i: pair i may be in contact, first, in the leaf that starts at touch_time[i] or in the next one, neither proven nor
+    /// disproved by the lanes; before, it is apart.
+    std::uint64_t may_touch[tile_pairs / 64];
+    double touch_time[tile_pairs];
     double earliest;                           ///< From the lanes: none of their times is before this.
     std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven; without a minimum separation lanes report no such.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
@@ -133,11 +137,22 @@ struct TileRequest {
 /// quotient) and of SearchParameters::time included.
 [[nodiscard]] FASTCCD_INLINE constexpr double time_limit(double cutoff) { return cutoff < 1.0 ? cutoff * (1.0 + 0x1p-49) : 1.0; }
 
+/// A leaf for each pair of a block, and what the certified search reports there.
+struct LeafAnswers {
+    /// Where the leaf starts, not the step's first, such that the search finds the pair apart before it; then the time reported.
+    alignas(64) double time[block_pairs];
+    /// Bits of the pairs that are in contact in that leaf or, if that is apart, in the next one; others may be as well.
+    unsigned reported, proven;
+};
+
+using ContactInLeaves = void(PairKind, const double* block, const SearchParameters&, LeafAnswers&);
+
 struct KernelTable {
     Isa isa;
-    /// Fills time, roots, reported, is_undecided and earliest of the scratch, and adds to is_unproven. What the lanes found of an
-    /// undecided pair is to be overwritten.
+    /// Fills time, roots, reported, is_undecided, may_touch, touch_time and earliest of the scratch, and adds to is_unproven. What the
+    /// lanes found of an undecided pair is to be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
+    ContactInLeaves* contact_in_leaves;
     /// For the certified search of one pair; null if intervals are better looked at one by one.
     IntervalKernel intervals;
 };

@@ -58,20 +58,22 @@ FASTCCD_INLINE L cubic_magnitude(const RelativeMotion<L>& r)
 /// Bound of the coefficients of one component of r_i x r_j on any part of the interval.
 /// Terms err by 2 rho + 1 (factors, product), sums by 2 more (the middle coefficient), the two blossom levels by 6: relative
 /// to m, the largest sum of magnitudes of the three, which also bounds the coefficients.
-inline double quadratic_bound(double start, double twice_middle, double end, double from_extents, const ErrorBounds& bounds)
+template <class L>
+FASTCCD_INLINE L quadratic_bound(L start, L twice_middle, L end, L from_extents, const ErrorBounds& bounds)
 {
-    const double m = max(start, 0.5 * twice_middle, end);
-    const double bound = (2 * bounds.rho + 9 + ErrorBounds::slack) * ErrorBounds::u * m;
-    return min(bound + underflow_share * from_extents, from_extents);
+    const L m = max(start, broadcast<L>(0.5) * twice_middle, end);
+    const L bound = broadcast<L>((2 * bounds.rho + 9 + ErrorBounds::slack) * ErrorBounds::u) * m;
+    return min(bound + broadcast<L>(underflow_share) * from_extents, from_extents);
 }
 
 /// Bound of the Bernstein coefficients of the coplanarity cubic on any part of the interval, in the certified search.
 /// Terms of 3 f1: 2 rho + 1, + 2 for the sums of the cross products, rho + 1 for the third factor, + 3 for the sums of
 /// the dot products, + 2 for the multiplication by 1/3, and 9 for three blossom levels: 3 rho + 18.
-inline double cubic_bound(const RelativeMotion<double>& r, double from_extents, const ErrorBounds& bounds)
+template <class L>
+FASTCCD_INLINE L cubic_bound(const RelativeMotion<L>& r, L from_extents, const ErrorBounds& bounds)
 {
-    const double bound = (3 * bounds.rho + 18 + ErrorBounds::slack) * ErrorBounds::u * cubic_magnitude(r);
-    return min(bound + underflow_share * from_extents, from_extents);
+    const L bound = broadcast<L>((3 * bounds.rho + 18 + ErrorBounds::slack) * ErrorBounds::u) * cubic_magnitude(r);
+    return min(bound + broadcast<L>(underflow_share) * from_extents, from_extents);
 }
 
 /// What ErrorBounds::cubic_on_interval_lanes() is to extents: a strict sign beyond this on [a, b] in the lanes is one in the search, beyond

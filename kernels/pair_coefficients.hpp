@@ -9,22 +9,24 @@ namespace fastccd {
 inline constexpr unsigned most_lanes = 8;
 
 /// Bernstein coefficients over the whole interval [0, 1], of the pair as scaled by the search (scalar/scaling.hpp), and the bounds
-/// of what is computed from them on any part of it.
-struct PairCoefficients {
+/// of what is computed from them on any part of it. T: double, or a lane type, for as many pairs side by side.
+template <class T>
+struct PairCoefficientsOf {
     /// One component of an edge function (visit_edge_functions).
     struct EdgeFunction {
-        double start, middle, end;
-        double bound;
+        T start, middle, end;
+        T bound;
     };
 
     PairKind kind;
-    double start[3][3], end[3][3];  ///< r_1, r_2, r_3 by axis, at both ends.
-    double gap_bound[3];            ///< Of a difference of two coordinates, by axis.
-    double cubic[4], cubic_bound;   ///< Of coplanarity.
-    EdgeFunction edges[3][4];       ///< By axis of projection: p, q, t, and for two edges s.
-    double edge, speed;             ///< C1 and C2 of eq. 6.
-    double area_rounding;           ///< Of area inclusion (area_inclusion.hpp).
+    T start[3][3], end[3][3];  ///< r_1, r_2, r_3 by axis, at both ends.
+    T gap_bound[3];            ///< Of a difference of two coordinates, by axis.
+    T cubic[4], cubic_bound;   ///< Of coplanarity.
+    EdgeFunction edges[3][4];  ///< By axis of projection: p, q, t, and for two edges s.
+    T edge, speed;             ///< C1 and C2 of eq. 6.
+    T area_rounding;           ///< Of area inclusion (area_inclusion.hpp).
 };
+using PairCoefficients = PairCoefficientsOf<double>;
 
 /// Bit i: the pair is certainly apart on [starts[i], ends[i]], one interval per lane. `by_area`: eq. 7 counts, too. `met`: bits of
 /// intervals that are known to have no certificate but that.

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include <householder.hpp>
-#include <pair_coefficients.hpp>
 #include <search_parameters.hpp>
+#include <touching.hpp>
 
 namespace fastccd::scalar {
 
@@ -21,26 +21,31 @@ public:
           pieces{monotone_pieces<double>({pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, 0.0, parameters.bounds,
                                          parameters.leaf_width, 0.0, 1.0)}
     {
-        // Zero throughout: such a pair may touch anywhere.
+        // Zero throughout: such a pair may touch anywhere, most probably where gaps end.
         bool zero = true;
         for (const double value : pieces.value) zero = zero && level(value) == value;
-        if (zero) next_piece = 3;
+        if (!zero) return;
+        next_piece = 3;
+        gaps = pair.kind == PairKind::vertex_face ? last_gap<PairKind::vertex_face>(motion_of(pair), pair.gap_bound).end
+                                                  : last_gap<PairKind::edge_edge>(motion_of(pair), pair.gap_bound).end;
     }
 
     /// The first one that is not before s; nowhere if there is none.
     double from(double s)
     {
         for (; time < s; ++next_piece) {
-            if (next_piece == 3) return time = nowhere;
+            if (next_piece == 3) return time = s <= gaps ? gaps : nowhere;
             time = in_piece(next_piece);
         }
         return time;
     }
 
-    /// Where the cubic itself is zero, next to what from() answered last; nowhere if it does not change sign there.
+    /// Where the cubic itself is zero, next to what from() answered last; nowhere if it does not change sign there. Of one that is zero
+    /// throughout, what from() answered.
     [[nodiscard]] double root() const
     {
-        if (next_piece == 0 || time == nowhere) return nowhere;
+        if (time == gaps) return gaps;
+        if (next_piece == 0) return nowhere;
         const int k = next_piece - 1;
         if ((pieces.value[k] < 0.0) == (pieces.value[k + 1] < 0.0)) return nowhere;
         return clipped_step(pieces.f, Bracket<double>{pieces.time[k], pieces.time[k + 1]}, time);
@@ -66,6 +71,7 @@ private:
     }
 
     double bound;
+    double gaps = nowhere;  ///< Where they end, if the cubic tells nothing.
     MonotonePieces<double> pieces;
     int next_piece = 0;
     double time = none_yet;

@@ -51,11 +51,20 @@ public:
     }
 
     /// For a leaf without a certificate: `none` if it is apart after all; its left end if contact is proven
-    /// inside; otherwise the left end of the first part that cannot be cleared.
+    /// inside; otherwise a time just before it touches there, or the left end of the first part that cannot be cleared.
     double contact_in_leaf(Interval leaf)
     {
         // A positive lower bound is wanted for a pair that is apart at time 0, proven contact or not.
-        if (leaf.a > 0.0 && contact_proven(leaf)) return leaf.a;
+        if (leaf.a > 0.0) {
+            if (pair.contact_proven(leaf)) return leaf.a;
+            if (leaf.width() >= narrowest_touched) {
+                const Touch<double> found = pair.touch(leaf);
+                if (found.present.value) {
+                    touch = found.time;
+                    return found.lower_bound;
+                }
+            }
+        }
         const auto is_finest = [](Interval i) { return i.width() <= std::max(i.a * finest_relative, finest_at_zero); };
         const unsigned limit = std::min(search.intervals + most_intervals_in_leaf, most_intervals);
         IntervalStack stack;
@@ -70,25 +79,20 @@ public:
     {
         if (s == 0.0 && zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
         // At the cap, contact may have been found in an interval that is wider than a leaf.
-        if (contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
-        return proof_nearby(s);
+        if (pair.contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
+        return proof_nearby(touch == none ? s : touch);
     }
 
     /// The same for any s: contact for certain in some interval around s.
-    [[nodiscard]] Proof proof_nearby(double s) const
-    {
-        for (double reach = narrowest_proof; reach <= widest_proof; reach *= 8) {
-            const Interval around{std::max(s - reach, 0.0), std::min(s + reach, 1.0)};
-            if (!pair.included(around)) return Proof::none;  // nor, but for rounding, in anything wider
-            if (sign_changes(around)) return Proof::nearby;
-        }
-        return Proof::none;
-    }
+    [[nodiscard]] Proof proof_nearby(double s) const { return pair.contact_proven_near(s) ? Proof::nearby : Proof::none; }
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
     /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which fewer than
-    /// that many have not come to.
-    [[nodiscard]] bool in_doubt(double s) const { return search.intervals >= most_intervals_in_leaf || !pair.well_shaped(s); }
+    /// that many have not come to. Not where it touches, which is neither.
+    [[nodiscard]] bool in_doubt(double s) const
+    {
+        return touch == none && (search.intervals >= most_intervals_in_leaf || !pair.well_shaped(s));
+    }
 
     [[nodiscard]] unsigned intervals() const { return search.intervals; }
     /// One that was examined by someone who shares the cap.
@@ -100,9 +104,6 @@ private:
     /// this absolute one.
     static constexpr double finest_relative = 0x1p-52;
     static constexpr double finest_at_zero = 0x1p-100;
-
-    /// Within less, rounding hides every change of sign; within more, inclusion rarely lasts.
-    static constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
 
     /// The cubic at time 0 is zero to within its bound.
     [[nodiscard]] bool zero_at_start() const { return std::abs(pair.coefficients().cubic[0]) <= pair.cubic_bound(); }
@@ -122,21 +123,11 @@ private:
         return true;
     }
 
-    /// The cubic has strict opposite signs at the ends.
-    [[nodiscard]] bool sign_changes(Interval i) const
-    {
-        const Cubic<double> f = pair.coplanarity(i);
-        const double bound = pair.cubic_bound();
-        return (f.c0 > bound && f.c3 < -bound) || (f.c0 < -bound && f.c3 > bound);
-    }
-
-    /// And inclusion is strict throughout.
-    [[nodiscard]] bool contact_proven(Interval leaf) const { return sign_changes(leaf) && pair.included(leaf); }
-
     const PairPolynomials<kind>& pair;
     const SearchParameters& parameters;
     OrderedSearch<kind> search;
     Interval leaf_of_answer{0.0, 1.0};  ///< Where first_contact() found contact.
+    double touch = none;                ///< And where it touches in there (touching.hpp).
 };
 
 }  // namespace fastccd::scalar

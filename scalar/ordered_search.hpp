@@ -11,7 +11,6 @@
 
 #include <expected_contact.hpp>
 #include <interval_stack.hpp>
-#include <meeting.hpp>
 #include <pair_polynomials.hpp>
 
 namespace fastccd::scalar {
@@ -136,7 +135,7 @@ private:
         if (target == tried) return;
         tried = target;
         const double root = expected->root();
-        meeting = root != ExpectedContact::nowhere && Meeting<kind>{pair.coefficients()}.at(root) ? root : ExpectedContact::nowhere;
+        meeting = root != ExpectedContact::nowhere && meets_at<kind>(pair.coefficients(), root).value ? root : ExpectedContact::nowhere;
     }
 
     /// Intervals that wait, each with its halves.

@@ -5,48 +5,16 @@
 #include <cstdlib>
 #include <limits>
 
-#include <block_source.hpp>
 #include <exact_contact.hpp>
 #include <fastccd/isa.hpp>
 #include <index_check.hpp>
+#include <load_pair.hpp>
 #include <separation_search.hpp>
+#include <touching_blocks.hpp>
 
 namespace fastccd {
 
 namespace {
-
-template <class T>
-void load_pair(const PairView& pairs, std::size_t i, double* coordinates)
-{
-    for (std::size_t c = 0; c < pair_coordinates; ++c) {
-        switch (pairs.layout()) {
-            case PairView::Layout::blocked:
-                coordinates[c] = static_cast<const T*>(pairs.data())[(i / block_pairs) * block_coordinates +
-                                                                     c * block_pairs + i % block_pairs];
-                break;
-            case PairView::Layout::interleaved:
-                coordinates[c] = static_cast<const T*>(pairs.data())[i * pair_coordinates + c];
-                break;
-            case PairView::Layout::strided:
-                coordinates[c] = static_cast<const T*>(pairs.data(c))[static_cast<std::ptrdiff_t>(i) * pairs.stride()];
-                break;
-        }
-    }
-}
-
-void gather_pair(PairKind kind, const IndexedSource& source, std::size_t i, double* coordinates)
-{
-    std::size_t vertex[4];
-    if (kind == PairKind::vertex_face)
-        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::vertex_face, false>(source, source.pairs + 2 * i, vertex);
-    else
-        FASTCCD_KERNEL_NAMESPACE::pair_vertices<PairKind::edge_edge, false>(source, source.pairs + 2 * i, vertex);
-    for (std::size_t point = 0; point < 4; ++point)
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            coordinates[3 * point + axis] = source.records[vertex_record_size * vertex[point] + axis];
-            coordinates[12 + 3 * point + axis] = source.records[vertex_record_size * vertex[point] + 3 + axis];
-        }
-}
 
 /// Both times are lower bounds of the first contact.
 void settle(const Job& job, const double* coordinates, scalar::SearchResult& found)
@@ -64,12 +32,7 @@ void settle(const Job& job, const double* coordinates, scalar::SearchResult& fou
 double search_pair(const Job& job, std::size_t first, std::size_t i, double cutoff, TileScratch& scratch)
 {
     double coordinates[pair_coordinates];
-    if (job.source.view == nullptr)
-        gather_pair(job.kind, job.source.indexed, first + i, coordinates);
-    else if (job.source.view->scalar() == PairView::Scalar::float64)
-        load_pair<double>(*job.source.view, first + i, coordinates);
-    else
-        load_pair<float>(*job.source.view, first + i, coordinates);
+    load_pair(job.kind, job.source, first + i, coordinates);
     const scalar::SearchResult found = answer_pair(job, coordinates, cutoff);
     scratch.time[i] = found.toi;
     scratch.roots[i] = found.roots;
@@ -161,6 +124,7 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
     };
     if (job.kernels != nullptr) {
         job.kernels->run_tile({job.kind, &job.source, first, count, &parameters, cutoff, preferences()}, scratch);
+        decide_touching(job, first, count, scratch);
         earliest = parameters.time(scratch.earliest);
         if (parameters.t_max != 1.0)
             for_each_bit(scratch.reported, count, [&](std::size_t i) { scratch.time[i] = parameters.time(scratch.time[i]); });

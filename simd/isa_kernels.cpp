@@ -10,6 +10,7 @@
 #include <interval_certificates.hpp>
 #include <pipeline.hpp>
 #include <separation_pipeline.hpp>
+#include <touching_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -57,6 +58,6 @@ constexpr IntervalKernel interval_kernel()
 }  // namespace
 
 extern const KernelTable table;
-const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, interval_kernel<KernelLane>()};
+const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, contact_in_leaves_of_block<KernelLane>, interval_kernel<KernelLane>()};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

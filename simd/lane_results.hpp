@@ -34,6 +34,19 @@ FASTCCD_INLINE void leave_undecided(TileScratch& scratch, L pair, unsigned lanes
     for_each_pair(pair, lanes, [&](unsigned i, int) FASTCCD_INLINE_LAMBDA { set_bit(scratch.is_undecided, i); });
 }
 
+/// Notes that pairs of these lanes may touch in the leaves that start at `left`.
+template <class L>
+FASTCCD_INLINE void note_touches(TileScratch& scratch, L pair, L left, unsigned lanes)
+{
+    alignas(64) double lefts[Lane<L>::width];
+    Lane<L>::store(lefts, left);
+    for_each_pair(pair, lanes, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
+        const bool is_first = (scratch.may_touch[i / 64] >> i % 64 & 1) == 0 || lefts[lane] < scratch.touch_time[i];
+        if (is_first) scratch.touch_time[i] = lefts[lane];
+        set_bit(scratch.may_touch, i);
+    });
+}
+
 /// Nothing reported, nothing undecided, all times +infinity. In scenes most words of 64 pairs report nothing, and their times are not
 /// touched, here and in mark_reported(): all of them would be most of the first-level cache, in which pairs to come are already.
 template <class L>
@@ -52,6 +65,7 @@ FASTCCD_INLINE void clear_results(TileScratch& scratch, std::size_t count)
     __builtin_memset(scratch.roots, 0, (count + 63) / 64 * 64);
     __builtin_memset(scratch.reported, 0, sizeof scratch.reported);
     __builtin_memset(scratch.is_undecided, 0, sizeof scratch.is_undecided);
+    __builtin_memset(scratch.may_touch, 0, sizeof scratch.may_touch);
 }
 
 /// 64 bytes.

@@ -6,13 +6,16 @@
 //                   apart                                         v                                |             |
 //                                                               apart                      contact or apart      [slow]
 //                                                                                                                |
-//                          certified search  <- undecided, here and above -  more steps, tighter bounds <--------+
-//                                                                                  |
-//                                                                                  v
-//                                                                           contact or apart
+//                  may touch, or undecided  <- here and above -  more steps, tighter bounds <--------------------+
+//                     |              |                             |
+//                     v              v                             v
+//      leaf as the search       certified search             contact or apart
+//      sees it: contact,             ^
+//      or undecided -----------------+
 //
 // [slow] also takes the roots after a pair's first, if that is no contact or if roots are counted. Before a pair is left undecided by
-// the search for its roots, all certificates are tried on quarters of the step.
+// the search for its roots, all certificates are tried on quarters of the step. Pairs that touch at a side or an end, or next to the end
+// of a leaf, are noted with that leaf, and decided after the tile, from their coordinates (touching_pairs.hpp).
 //
 // The first stages run in single precision where that makes lanes of it, twice as many as of double: differences of coordinates are taken
 // in double, then rounded. They only prove pairs apart, by bounds for that precision (ErrorBounds::screening_in_single), and what they
@@ -28,7 +31,9 @@
 //   which no leaf straddles (see error_bound.hpp);
 // - "contact in leaf j" is concluded only from a proof (a strict sign change of the cubic over the leaf and
 //   strict inclusion throughout it), so that no certificate of absence can hold there, together with
-//   "apart" for everything before it.
+//   "apart" for everything before it;
+// - of a pair that may touch in leaf j nothing is concluded but "apart" for everything before that leaf: what the search says of the
+//   leaf itself is asked by its own text, bounds and all.
 // Everything else is left undecided. So the bits do not depend on the instruction set or the batch.
 #pragma once
 

@@ -8,6 +8,7 @@
 #include <part_certificates.hpp>
 #include <projected_inclusion.hpp>
 #include <records.hpp>
+#include <touching.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -45,6 +46,7 @@ private:
 
     const SearchParameters& parameters;
     TileScratch& scratch;
+    const bool may_note_touches = parameters.leaf_width >= narrowest_touched && !parameters.count_roots;
 
     FASTCCD_INLINE void find_roots_if_many()
     {
@@ -127,7 +129,23 @@ private:
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
         const LaneMask<L> first = apart.first | less(zero, window.low), second = apart.second | less(window.high, one);
         lanes &= ~Lane<L>::bits(first & second);
-        if (lanes != 0) leave_undecided(scratch, record.pair, lanes);
+        if (lanes != 0) look_at_gaps(record, lanes);
+    }
+
+    /// Pairs that coordinate axes keep apart, until the last gap ends in a leaf where they may touch.
+    FASTCCD_INLINE void look_at_gaps(const PairRecord<L>& record, unsigned lanes)
+    {
+        if (may_note_touches) {
+            const L zero = broadcast<L>(0.0), no_bounds[] = {zero, zero, zero};
+            const Leaf leaf = leaf_around(last_gap<kind>(record.r, no_bounds).end);
+            const RelativeMotion<L> before{{record.r.start[0], record.r.start[1], record.r.start[2]},
+                                           {position(record.r, 0, leaf.left), position(record.r, 1, leaf.left), position(record.r, 2, leaf.left)}};
+            const LaneMask<L> apart_before = separated_on_part<kind>(before, extents(record.r), parameters.bounds.on_part());
+            const unsigned noted = lanes & Lane<L>::bits(leaf.inner & apart_before);
+            note_touches(scratch, record.pair, leaf.left, noted);
+            lanes &= ~noted;
+        }
+        leave_undecided(scratch, record.pair, lanes);
     }
 
     FASTCCD_INLINE void approach_root(unsigned i)
@@ -310,8 +328,23 @@ private:
     __attribute__((noinline)) void look_again(const PairRecord<L>& root, unsigned lanes)
     {
         lanes &= ~Lane<L>::bits(look_around(root).absent);
+        if (may_note_touches) {
+            // f has one strict sign from the bracket's low side, and a leaf before it, to the leaf.
+            const Leaf leaf = leaf_around(root.guess);
+            const L w = broadcast<L>(parameters.leaf_width), zero = broadcast<L>(0.0);
+            const RootBracket bracket = bracket_root(root, broadcast<L>(fine_bracket));
+            const Cubic<L> f_before = on_interval(bernstein(root.cubic), max(min(bracket.low, leaf.left) - w, zero), leaf.left);
+            const L bound = cubic_bound_lanes(root.r, root.scale.volume, parameters.bounds);
+            const LaneMask<L> apart_before = less(bound, smallest(f_before)) | less(largest(f_before), negated(bound));
+            const unsigned noted = lanes & Lane<L>::bits(leaf.inner & bracket.certain & apart_before);
+            note_touches(scratch, root.pair, leaf.left, noted);
+            lanes &= ~noted;
+        }
         if (lanes != 0) look_at_quarters(root, lanes);
     }
+
+    /// The leaf that holds `time`, or the one before it if `time` is close to its start.
+    FASTCCD_INLINE Leaf leaf_around(L time) const { return leaf_at(time - broadcast<L>(0.25 * parameters.leaf_width)); }
 
     /// Without branches on which lanes are in contact: no processor foresees that, and while it finds out, the next batch would
     /// wait. `reported` is left to mark_reported: bits of one word would wait for one another here.

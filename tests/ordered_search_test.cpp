@@ -172,11 +172,10 @@ void look_for_certificates(const std::vector<oracle::Pair>& pairs, const SearchP
         scalar::ExpectedContact expected{polynomials.coefficients(), parameters};
         const double first = expected.from(0.0), root = expected.root();
         if (first == expected.nowhere) continue;
-        const scalar::Meeting<kind> meeting{polynomials.coefficients()};
         for (int k = 0; k < 12; ++k) {
             const double by = k < 2 ? 0.0 : width() / 16, near = k % 2 == 0 || root == expected.nowhere ? first : root;
             const double s = std::clamp(k % 4 < 2 ? near + by : near - by, 0.0, 1.0);
-            const bool meets = meeting.at(s);
+            const bool meets = scalar::meets_at<kind>(polynomials.coefficients(), s).value;
             ++(meets ? seen.met : seen.not_met);
             for (int i = 0; meets && i < 20; ++i) {
                 const double before = i % 5 == 0 ? 0.0 : width(), after = i % 5 == 1 ? 0.0 : width();

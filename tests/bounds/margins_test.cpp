@@ -72,7 +72,7 @@ double value_ratio(const Polynomial& whole, const Input& in)
     const double a = std::min(in.a, in.b), b = std::max(in.a, in.b), s = std::clamp(0.5 * (a + b), a, b);
     const Polynomial local = portable::on_interval(whole, a, b);
     const double value = portable::on_interval(whole, s, s).c0;
-    return std::max(portable::smallest(local) - value, value - portable::largest(local)) / scalar::value_margin(whole);
+    return std::max(portable::smallest(local) - value, value - portable::largest(local)) / portable::value_margin(whole);
 }
 
 TEST(Margins, ValuesWithinIntervals)
@@ -84,10 +84,10 @@ TEST(Margins, ValuesWithinIntervals)
     }, ordinary_shifts, effort);
     expect_bound("value_margin, positions", 0.02, [](const Input& in) {
         const Computed c{in};
-        const scalar::AxisMotion p{c.r.start[0].x, c.r.end[0].x}, q{c.r.start[1].x, c.r.end[1].x};
+        const portable::AxisMotion<double> p{c.r.start[0].x, c.r.end[0].x}, q{c.r.start[1].x, c.r.end[1].x};
         const auto gap = [&](double s) { return q.at(s) - p.at(s); };
         const double a = std::min(in.a, in.b), b = std::max(in.a, in.b), at_s = gap(std::clamp(0.5 * (a + b), a, b));
-        return std::max(std::min(gap(a), gap(b)) - at_s, at_s - std::max(gap(a), gap(b))) / scalar::value_margin(p, q);
+        return std::max(std::min(gap(a), gap(b)) - at_s, at_s - std::max(gap(a), gap(b))) / portable::value_margin(p, q);
     }, ordinary_shifts, effort);
 }
 

@@ -1,0 +1,105 @@
+// One look at a time that answers for all intervals around it.
+//
+// Intervals on the way down to a contact have no certificate, and to find that out takes all of them. Where the pair meets at s, or
+// comes as close to it as rounding can tell, values at s contradict each certificate on any interval that contains s: a value at s
+// lies between the coefficients on the interval, which would all have to be beyond a bound.
+//
+// Both are computed. One lerp errs by 3 u M at most, M the larger magnitude of its operands: by u M of both products, (1 - s) M + s M in
+// size, by u M of their sum, and by u / 2 M as 1 - s is rounded; the rest is for terms in u^2 and for what is rounded below. Blossoms of n
+// levels err by 3 n u C, C the largest coefficient on [0, 1]. So if all coefficients that the search computes on an interval are beyond
+// its bound, a value computed at s within is beyond that bound less twice that much. It is not: so they are not.
+#pragma once
+
+#include <interval_certificates.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// How far a value at s may lie outside of the coefficients on an interval that contains s, both computed.
+template <class L>
+FASTCCD_INLINE L value_margin(const Cubic<L>& f)
+{
+    return broadcast<L>(2 * 9 * ErrorBounds::u) * max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
+}
+template <class L>
+FASTCCD_INLINE L value_margin(const Quadratic<L>& q)
+{
+    return broadcast<L>(2 * 6 * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
+}
+
+/// A vertex along an axis, from start to end.
+template <class L>
+struct AxisMotion {
+    L start, end;
+
+    [[nodiscard]] FASTCCD_INLINE L at(L s) const { return lerp(start, end, s); }
+    [[nodiscard]] FASTCCD_INLINE L largest() const { return max(abs(start), abs(end)); }
+};
+
+/// The same for the difference of two positions, and those at the ends of the interval. Each position errs by 3 u of its larger
+/// magnitude, the difference by u of both, at one time; those of equal motions are equal.
+template <class L>
+FASTCCD_INLINE L value_margin(const AxisMotion<L>& p, const AxisMotion<L>& q)
+{
+    const auto equal = [](L a, L b) FASTCCD_INLINE_LAMBDA { return less_equal(a, b) & less_equal(b, a); };
+    const L margin = broadcast<L>(2 * 4 * ErrorBounds::u) * (p.largest() + q.largest());
+    return select<L>(equal(p.start, q.start) & equal(p.end, q.end), broadcast<L>(0.0), margin);
+}
+
+template <class L>
+FASTCCD_INLINE LaneMask<L> may_be_coplanar(const PairCoefficientsOf<L>& pair, L s)
+{
+    const Cubic<L> f{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]};
+    return less_equal(abs(on_interval(f, s, s).c0) + value_margin(f), pair.cubic_bound);
+}
+
+/// As apart_along, with the signs that edge functions may have throughout an interval.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> may_touch_along(const PairCoefficientsOf<L>& pair, int axis, L s)
+{
+    const auto sign = [&](int edge) FASTCCD_INLINE_LAMBDA -> StrictSign<L> {
+        const auto& e = pair.edges[axis][edge];
+        const Quadratic<L> q{e.start, e.middle, e.end};
+        const L value = on_interval(q, s, s).c0, needed = e.bound - value_margin(q);
+        return {less(needed, value), less(value, negated(needed))};
+    };
+    const StrictSign<L> p = sign(0), q = sign(1), t = sign(2);
+    if constexpr (kind == PairKind::vertex_face) {
+        return !((p.positive | q.positive | t.positive) & (p.negative | q.negative | t.negative));
+    } else {
+        const StrictSign<L> r = sign(3);
+        return !((p.positive & t.positive) | (p.negative & t.negative) | (q.positive & r.positive) | (q.negative & r.negative));
+    }
+}
+
+/// As separated_on along one axis: some vertex of the second primitive is not above, and some not below, some of the first.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> may_overlap_along(const PairCoefficientsOf<L>& pair, int axis, L s)
+{
+    const L zero = broadcast<L>(0.0);
+    const auto motion = [&](int i) FASTCCD_INLINE_LAMBDA -> AxisMotion<L> { return {pair.start[i][axis], pair.end[i][axis]}; };
+    const AxisMotion<L> first[] = {{zero, zero}, motion(0)};
+    constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
+    LaneMask<L> reaches_up = less(zero, zero), reaches_down = reaches_up;
+    for (int i = 0; i < vertices_of_first; ++i)
+        for (int j = vertices_of_first - 1; j < 3; ++j) {
+            const AxisMotion<L> second = motion(j);
+            const L gap = second.at(s) - first[i].at(s), needed = pair.gap_bound[axis] - value_margin(first[i], second);
+            reaches_up = reaches_up | !less(needed, gap);
+            reaches_down = reaches_down | !less(gap, negated(needed));
+        }
+    return reaches_up & reaches_down;
+}
+
+/// Where no interval that contains s has one of the three certificates (apart_on), rounding included.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> meets_at(const PairCoefficientsOf<L>& pair, L s)
+{
+    LaneMask<L> meets = may_be_coplanar(pair, s);
+    for (int axis = 0; axis < 3; ++axis) {
+        if (Lane<L>::bits(meets) == 0) return meets;
+        meets = meets & may_touch_along<kind>(pair, axis, s) & may_overlap_along<kind>(pair, axis, s);
+    }
+    return meets;
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -1,0 +1,230 @@
+// Contact at the very side or end of a primitive, of edges that stay parallel, or next to the end of a leaf: as of meshes whose vertices lie
+// on the same grid.
+//
+// There nothing proves contact within a leaf, and no part of it, however narrow, does. But where the pair meets, as far as rounding can tell,
+// at some time of the leaf, no part that contains this time has a certificate of absence either: halved down to the spacing of doubles,
+// the leaf would still be reported. So it is at once, by the search and, with the same bits, by lanes; with a lower bound as close to that
+// time as a certificate on what is before it allows.
+#pragma once
+
+#include <meeting.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+template <class L>
+FASTCCD_INLINE RelativeMotion<L> motion_of(const PairCoefficientsOf<L>& pair)
+{
+    const auto vector = [](const L* v) FASTCCD_INLINE_LAMBDA -> Vector3<L> { return {v[0], v[1], v[2]}; };
+    return {{vector(pair.start[0]), vector(pair.start[1]), vector(pair.start[2])},
+            {vector(pair.end[0]), vector(pair.end[1]), vector(pair.end[2])}};
+}
+
+/// When the pair, apart along coordinate axes at the start, is no longer apart along the last of them: 0 if along none, 1 if it stays so.
+/// And before that, when the gap is three times its bound (a number for each axis). Guesses.
+template <class L>
+struct LastGap {
+    L end, before;
+};
+
+template <PairKind kind, class L>
+FASTCCD_INLINE LastGap<L> last_gap(const RelativeMotion<L>& r, const L (&bounds)[3])
+{
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    LastGap<L> last{zero, zero};
+    const auto look_along = [&](L bound, auto component) FASTCCD_INLINE_LAMBDA {
+        const AxisMotion<L> first[] = {{zero, zero}, {component(r.start[0]), component(r.end[0])}};
+        constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
+        LaneMask<L> above = less_equal(zero, zero), below = above;
+        LastGap<L> gap{one, one};  // of all vertices of one to all of the other, the first to close
+        for (int i = 0; i < vertices_of_first; ++i)
+            for (int j = vertices_of_first - 1; j < 3; ++j) {
+                const L start = component(r.start[j]) - first[i].start, end = component(r.end[j]) - first[i].end, change = start - end;
+                above = above & less(zero, start);
+                below = below & less(start, zero);
+                const LaneMask<L> closes = (less(zero, start) & less_equal(end, zero)) | (less(start, zero) & less_equal(zero, end));
+                const L closed = start / change;
+                const LaneMask<L> is_first = closes & less(closed, gap.end);
+                gap.end = select<L>(is_first, closed, gap.end);
+                gap.before = select<L>(is_first, closed - broadcast<L>(3.0) * bound / abs(change), gap.before);
+            }
+        const LaneMask<L> is_last = (above | below) & less(last.end, gap.end);
+        last = {select<L>(is_last, gap.end, last.end), select<L>(is_last, gap.before, last.before)};
+    };
+    look_along(bounds[0], [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; });
+    look_along(bounds[1], [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; });
+    look_along(bounds[2], [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; });
+    return last;
+}
+
+/// A time of [a, b] to look at, and one before it, when the pair is just certain to be apart; guesses both. Expected: what lies between
+/// them is within [a, b], and no more than half of it.
+template <class L>
+struct LikelyTouch {
+    L time, before;
+    LaneMask<L> expected;
+};
+
+template <class L>
+FASTCCD_INLINE LikelyTouch<L> likely_touch(L time, L before, L a, L b)
+{
+    return {time, before, less_equal(time, b) & less(a, before) & less(time - before, broadcast<L>(0.5) * (b - a))};
+}
+
+/// At the zero of the cubic, if that is beyond its bound at a, by its chord and two corrections.
+template <class L>
+FASTCCD_INLINE LikelyTouch<L> touch_by_cubic(const PairCoefficientsOf<L>& pair, L a, L b)
+{
+    const Cubic<L> whole{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, f = on_interval(whole, a, b);
+    const L slope = f.c0 - f.c3, width = b - a;
+    L time = max(min(a + width * (f.c0 / slope), b), a);
+    for (int k = 0; k < 2; ++k) time = max(min(time + width * (on_interval(whole, time, time).c0 / slope), b), a);
+    LikelyTouch<L> likely = likely_touch(time, time - width * (broadcast<L>(4.0) * pair.cubic_bound / abs(slope)), a, b);
+    likely.expected = likely.expected & less(pair.cubic_bound, abs(f.c0));
+    return likely;
+}
+
+/// When gaps end: told better than by the cubic for edges that are nearly parallel.
+template <PairKind kind, class L>
+FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L a, L b)
+{
+    const LastGap<L> gap = last_gap<kind>(motion_of(pair), pair.gap_bound);
+    return likely_touch(gap.end, gap.before, a, b);
+}
+
+/// Where the pair meets at the time s, eq. 7 included.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> touches_at(const PairCoefficientsOf<L>& pair, L s)
+{
+    const LaneMask<L> meets = meets_at<kind>(pair, s);
+    return Lane<L>::bits(meets) == 0 ? meets : meets & !apart_by_area_on<kind>(pair, s, s);
+}
+
+/// Contact for certain within [a, b]: a strict change of sign, and strict inclusion throughout.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> contact_proven_on(const PairCoefficientsOf<L>& pair, L a, L b)
+{
+    const LaneMask<L> changes = changes_sign_on(pair, a, b);
+    return Lane<L>::bits(changes) == 0 ? changes : changes & included_on<kind>(pair, a, b);
+}
+
+/// Within less of a time, rounding hides every change of sign; within more, inclusion rarely lasts.
+inline constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
+
+/// Contact for certain in some interval around s.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> contact_proven_near(const PairCoefficientsOf<L>& pair, L s)
+{
+    LaneMask<L> proven = less(s, s), open = !proven;
+    for (double reach = narrowest_proof; reach <= widest_proof && Lane<L>::bits(open) != 0; reach *= 8) {
+        const L a = max(s - broadcast<L>(reach), broadcast<L>(0.0)), b = min(s + broadcast<L>(reach), broadcast<L>(1.0));
+        open = open & included_on<kind>(pair, a, b);  // if not, nor, but for rounding, in anything wider
+        if (Lane<L>::bits(open) == 0) break;
+        const LaneMask<L> changes = changes_sign_on(pair, a, b);
+        proven = proven | (open & changes);
+        open = open & !changes;
+    }
+    return proven;
+}
+
+/// Of what is computed from the pair at one time: how much smaller lengths may be than the longest one, and areas than the largest one of
+/// the step, for a pair that counts as well shaped. A choice, not a bound: who is well shaped is spared a look.
+inline constexpr double least_share = 0x1p-7;
+
+/// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some
+/// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp), is the largest at any time of the step. A height
+/// is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
+{
+    const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
+        // p + q + t is twice the area; r1 x (r3 - r2) is -(t + p)
+        const auto& edges = pair.edges[axis];
+        const L rest = broadcast<L>(1.0) - s;
+        L area = broadcast<L>(0.0), bound = area;
+        for (int edge = 0; edge < (kind == PairKind::vertex_face ? 3 : 4); ++edge) {
+            const auto& f = edges[edge];
+            if (kind == PairKind::vertex_face || edge % 2 == 0)
+                area = area + ((rest * f.start + broadcast<L>(2.0) * s * f.middle) * rest + s * s * f.end);
+            bound = max(bound, f.bound);
+        }
+        return less(broadcast<L>(0x1p49 * least_share) * bound, abs(area));
+    };
+    return along(0) | along(1) | along(2);
+}
+
+/// Whether two edges, neither much shorter than the pair is large, lie on one line at s as far as rounding can tell: an end's distance
+/// from the other edge's line is an area over a length.
+template <class L>
+FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s)
+{
+    const RelativeMotion<L> r = motion_of(pair);
+    const Vector3<L> r1 = position(r, 0, s), second = subtract(position(r, 2, s), position(r, 1, s));
+    const L least = broadcast<L>(least_share) * pair.edge;
+    LaneMask<L> in_line = less(least, max(abs(r1.x), abs(r1.y), abs(r1.z))) & less(least, max(abs(second.x), abs(second.y), abs(second.z)));
+    for (const auto& edges : pair.edges) {
+        if (Lane<L>::bits(in_line) == 0) return in_line;
+        for (const auto& f : edges) in_line = in_line & less_equal(abs(on_interval(Quadratic<L>{f.start, f.middle, f.end}, s, s).c0), f.bound);
+    }
+    return in_line;
+}
+
+/// Whether a vertex of one is where a vertex of the other is, at s, as far as rounding can tell: whatever their shapes, they are as close.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L s)
+{
+    const L zero = broadcast<L>(0.0);
+    constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
+    LaneMask<L> any = less(zero, zero);
+    for (int i = 0; i < vertices_of_first; ++i)
+        for (int j = vertices_of_first - 1; j < 3; ++j) {
+            LaneMask<L> same = less_equal(zero, zero);
+            for (int axis = 0; axis < 3; ++axis) {
+                const AxisMotion<L> first = i == 0 ? AxisMotion<L>{zero, zero} : AxisMotion<L>{pair.start[0][axis], pair.end[0][axis]};
+                const AxisMotion<L> second{pair.start[j][axis], pair.end[j][axis]};
+                same = same & less_equal(abs(second.at(s) - first.at(s)), pair.gap_bound[axis]);
+            }
+            any = any | same;
+        }
+    return any;
+}
+
+/// Whether rounding is not amplified by the pair's shape.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s)
+{
+    LaneMask<L> shaped = has_area_at<kind>(pair, s);
+    if (Lane<L>::bits(!shaped) != 0) shaped = shaped | share_vertex_at<kind>(pair, s);
+    if constexpr (kind == PairKind::edge_edge)
+        if (Lane<L>::bits(!shaped) != 0) shaped = shaped | are_in_line_at(pair, s);
+    return shaped;
+}
+
+/// In narrower leaves too few pairs touch for all to be looked at: what rounding hides is too large a part of them.
+inline constexpr double narrowest_touched = 0x1p-44;
+
+/// Whether a pair that is well shaped is in contact in [a, b] for all that rounding can tell, though nothing proves it, and before that
+/// apart for certain, but for the little time that rounding hides.
+template <class L>
+struct Touch {
+    LaneMask<L> present;
+    L time, lower_bound;  ///< When the pair meets; and until when it is apart on [a, b].
+};
+
+template <PairKind kind, class L>
+FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b)
+{
+    const auto touch_at = [&](const LikelyTouch<L>& likely) FASTCCD_INLINE_LAMBDA -> Touch<L> {
+        LaneMask<L> present = likely.expected;
+        if (Lane<L>::bits(present) != 0) present = present & touches_at<kind>(pair, likely.time);
+        if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, likely.time);
+        if (Lane<L>::bits(present) != 0) present = present & apart_on<kind>(pair, a, max(a, likely.before));
+        return {present, likely.time, likely.before};
+    };
+    const Touch<L> first = touch_at(touch_by_cubic(pair, a, b));
+    if (Lane<L>::bits(!first.present) == 0) return first;
+    const Touch<L> second = touch_at(touch_by_gaps<kind>(pair, a, b));
+    return {first.present | second.present, select<L>(first.present, first.time, second.time),
+            select<L>(first.present, first.lower_bound, second.lower_bound)};
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

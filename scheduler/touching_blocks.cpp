@@ -1,0 +1,75 @@
+#include <touching_blocks.hpp>
+
+#include <algorithm>
+
+#include <load_pair.hpp>
+
+namespace fastccd {
+
+namespace {
+
+/// Decided by one call, one pair a lane.
+class TouchingBlock {
+public:
+    TouchingBlock(const Job& j, std::size_t first_pair, TileScratch& s) : job{j}, first{first_pair}, scratch{s} {}
+
+    void take(std::size_t i)
+    {
+        double pair[pair_coordinates];
+        load_pair(job.kind, job.source, first + i, pair);
+        for (std::size_t c = 0; c < pair_coordinates; ++c) coordinates[c][size] = pair[c];
+        answers.time[size] = scratch.touch_time[i];
+        numbers[size++] = i;
+        if (size == block_pairs) decide();
+    }
+
+    void decide()
+    {
+        if (size == 0) return;
+        for (std::size_t lane = size; lane < block_pairs; ++lane) {  // the first one again
+            for (double(&row)[block_pairs] : coordinates) row[lane] = row[0];
+            answers.time[lane] = answers.time[0];
+        }
+        job.kernels->contact_in_leaves(job.kind, coordinates[0], job.parameters, answers);
+        for (std::size_t lane = 0; lane < size; ++lane) {
+            const std::size_t i = numbers[lane];
+            const std::uint64_t bit = std::uint64_t{1} << i % 64;
+            if ((answers.reported >> lane & 1) == 0) {
+                scratch.is_undecided[i / 64] |= bit;
+                continue;
+            }
+            scratch.time[i] = answers.time[lane];
+            scratch.earliest = std::min(scratch.earliest, scratch.time[i]);
+            scratch.reported[i / 64] |= bit;
+            if ((answers.proven >> lane & 1) == 0) scratch.is_unproven[i / 64] |= bit;
+        }
+        size = 0;
+    }
+
+private:
+    const Job& job;
+    std::size_t first;
+    TileScratch& scratch;
+    alignas(64) double coordinates[pair_coordinates][block_pairs];
+    LeafAnswers answers;
+    std::size_t numbers[block_pairs], size = 0;
+};
+
+}  // namespace
+
+void decide_touching(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch)
+{
+    if (job.exact || job.parameters.count_roots) {
+        for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.is_undecided[w] |= scratch.may_touch[w];
+        return;
+    }
+    for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.may_touch[w] &= ~scratch.is_undecided[w];
+    TouchingBlock block{job, first, scratch};
+    for_each_bit(scratch.may_touch, count, [&](std::size_t i) {
+        // A contact that is proven before it needs no other.
+        if (!(scratch.time[i] < scratch.touch_time[i])) block.take(i);
+    });
+    block.decide();
+}
+
+}  // namespace fastccd

@@ -1,0 +1,15 @@
+// Pairs of a tile that may touch, after the lanes and before the certified search.
+#pragma once
+
+#include <cstddef>
+
+#include <tile_runner.hpp>
+
+namespace fastccd {
+
+/// Of the pairs that the lanes noted in `may_touch` and have not left undecided: those that are in contact in the leaves noted are
+/// reported, at the parameter s; the others are left undecided. So are all where more is asked than the first contact: roots, or
+/// an exact verdict.
+void decide_touching(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch);
+
+}  // namespace fastccd
