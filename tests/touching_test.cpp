@@ -16,6 +16,7 @@
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
+#include "oracle/exact_distance.hpp"
 #include "thin_pairs.hpp"
 
 namespace fastccd::testing {
@@ -146,6 +147,59 @@ TEST(Touching, TimesAreNeitherLateNorEarly)
             std::printf("%s, E_tol %g: %zu pairs touch\n", kind_name(kind), tolerance, touches);
             EXPECT_GT(touches, amount(100));
         }
+}
+
+/// Largest exact distance at a touch, relative to the norm of the extents at both ends.
+template <PairKind kind>
+double farthest_touch(oracle::Kind exact_kind, const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters, std::size_t& touches)
+{
+    double farthest = 0.0;
+    for (const oracle::Pair& pair : pairs) {
+        const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
+        scalar::ExpectedContact expected{polynomials.coefficients(), parameters};
+        for (double near = expected.from(0.0); near != expected.nowhere; near = expected.from(std::nextafter(near, 2.0)))
+            for (const scalar::Interval leaf : leaves_around(near, parameters)) {
+                const auto touch = polynomials.touch(leaf);
+                if (!touch.present.value) continue;
+                ++touches;
+                double size_squared = 0.0;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    double extent = 0.0;
+                    for (const std::size_t end : {0u, 4u})
+                        for (std::size_t i = 1; i < 4; ++i) extent = std::max(extent, std::abs(pair[end + i][axis] - pair[end][axis]));
+                    size_squared += extent * extent;
+                }
+                const mpq_class distance_squared = oracle::squared_distance(exact_kind, pair, touch.time);
+                farthest = std::max(farthest, std::sqrt(distance_squared.get_d() / size_squared));
+            }
+    }
+    return farthest;
+}
+
+/// Who touches is as close as pairs of ordinary shape are where they are reported (README): of pairs whose volumes and areas are lost
+/// in rounding nothing is concluded from them.
+TEST(Touching, IsNoFartherThanRoundingHides)
+{
+    for (const auto kind : kinds) {
+        double farthest = 0.0;
+        std::size_t touches = 0;
+        const SearchParameters parameters{1e-9, 1.0, false};
+        const auto look = [&](const std::vector<oracle::Pair>& pairs) {
+            const double here = kind == oracle::Kind::vertex_face
+                                    ? farthest_touch<PairKind::vertex_face>(kind, pairs, parameters, touches)
+                                    : farthest_touch<PairKind::edge_edge>(kind, pairs, parameters, touches);
+            farthest = std::max(farthest, here);
+        };
+        look(ThinPairs{kind, 815}.next(amount(60000)));
+        std::vector<oracle::Pair> pairs;
+        for (const char* family : {"near_boundary", "parallel_slide", "momentary_degenerate", "collinear", "t1_contact", "grazing"}) {
+            generate(family, kind, 816, amount(2000), pairs);
+            look(pairs);
+        }
+        std::printf("%s: %zu touches, at a distance of %.2g u of the pair's size or less\n", kind_name(kind), touches, farthest * 0x1p53);
+        EXPECT_LE(farthest, 0x1p10 * 0x1p-53);
+        EXPECT_GT(touches, amount(3000));
+    }
 }
 
 struct Compared {
