@@ -85,12 +85,12 @@ struct TileScratch {
     std::uint64_t reported[tile_pairs / 64];   ///< Bit i: pair i has a time that is not +infinity. So that nothing
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
-    /// Bit i: pair i may be in contact, first, in the leaf that starts at touch_time[i] or in the next one, neither proven nor
-    /// disproved by the lanes; before, it is apart.
+    /// Bit i: pair i may be in contact in the leaf that starts at touch_time[i] or in the next one, neither proven nor disproved by the
+    /// lanes; before, it is apart, but for what else they say of it: a proven contact, or that it is undecided.
     std::uint64_t may_touch[tile_pairs / 64];
     double touch_time[tile_pairs];
     double earliest;                           ///< From the lanes: none of their times is before this.
-    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven; without a minimum separation lanes report no such.
+    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven; without a minimum separation run_tile reports no such.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.
@@ -139,8 +139,9 @@ struct TileRequest {
 
 /// A leaf for each pair of a block, and what the certified search reports there.
 struct LeafAnswers {
-    /// Where the leaf starts, not the step's first, such that the search finds the pair apart before it; then the time reported.
-    alignas(64) double time[block_pairs];
+    /// Asked: where the leaf starts, not the step's first, such that the search finds the pair apart before it.
+    alignas(64) double left[block_pairs];
+    alignas(64) double time[block_pairs];  ///< Answered, of the pairs reported.
     /// Bits of the pairs that are in contact in that leaf or, if that is apart, in the next one; others may be as well.
     unsigned reported, proven;
 };

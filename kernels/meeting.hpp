@@ -4,10 +4,11 @@
 // comes as close to it as rounding can tell, values at s contradict each certificate on any interval that contains s: a value at s
 // lies between the coefficients on the interval, which would all have to be beyond a bound.
 //
-// Both are computed. One lerp errs by 3 u M at most, M the larger magnitude of its operands: by u M of both products, (1 - s) M + s M in
-// size, by u M of their sum, and by u / 2 M as 1 - s is rounded; the rest is for terms in u^2 and for what is rounded below. Blossoms of n
-// levels err by 3 n u C, C the largest coefficient on [0, 1]. So if all coefficients that the search computes on an interval are beyond
-// its bound, a value computed at s within is beyond that bound less twice that much. It is not: so they are not.
+// Both are computed. One lerp errs by 2.5 u M at most, M the larger magnitude of its operands: by u M of both products, (1 - s) M + s M in
+// size, by u M of their sum, and by u / 2 M as 1 - s is rounded. Blossoms of n levels err by 2.5 n u C, C the largest coefficient on
+// [0, 1]; a tenth of u is for terms in u^2 and for what is rounded below. So if all coefficients that the search computes on an interval
+// are beyond its bound, a value computed at s within is beyond that bound less twice that much. It is not: so they are not. Of the bound of
+// an edge function, 13 u or more of the sum of its terms, this leaves 3 u at least for the rounding of a value that is zero.
 #pragma once
 
 #include <interval_certificates.hpp>
@@ -18,12 +19,12 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 template <class L>
 FASTCCD_INLINE L value_margin(const Cubic<L>& f)
 {
-    return broadcast<L>(2 * 9 * ErrorBounds::u) * max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
+    return broadcast<L>(2 * 7.6 * ErrorBounds::u) * max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
 }
 template <class L>
 FASTCCD_INLINE L value_margin(const Quadratic<L>& q)
 {
-    return broadcast<L>(2 * 6 * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
+    return broadcast<L>(2 * 5.1 * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
 }
 
 /// A vertex along an axis, from start to end.
@@ -35,13 +36,13 @@ struct AxisMotion {
     [[nodiscard]] FASTCCD_INLINE L largest() const { return max(abs(start), abs(end)); }
 };
 
-/// The same for the difference of two positions, and those at the ends of the interval. Each position errs by 3 u of its larger
+/// The same for the difference of two positions, and those at the ends of the interval. Each position errs by 2.5 u of its larger
 /// magnitude, the difference by u of both, at one time; those of equal motions are equal.
 template <class L>
 FASTCCD_INLINE L value_margin(const AxisMotion<L>& p, const AxisMotion<L>& q)
 {
     const auto equal = [](L a, L b) FASTCCD_INLINE_LAMBDA { return less_equal(a, b) & less_equal(b, a); };
-    const L margin = broadcast<L>(2 * 4 * ErrorBounds::u) * (p.largest() + q.largest());
+    const L margin = broadcast<L>(2 * 3.6 * ErrorBounds::u) * (p.largest() + q.largest());
     return select<L>(equal(p.start, q.start) & equal(p.end, q.end), broadcast<L>(0.0), margin);
 }
 

@@ -2,9 +2,10 @@
 // on the same grid.
 //
 // There nothing proves contact within a leaf, and no part of it, however narrow, does. But where the pair meets, as far as rounding can tell,
-// at some time of the leaf, no part that contains this time has a certificate of absence either: halved down to the spacing of doubles,
-// the leaf would still be reported. So it is at once, by the search and, with the same bits, by lanes; with a lower bound as close to that
-// time as a certificate on what is before it allows.
+// at some time of the leaf, no part that contains this time has one of the three certificates either (nor eq. 7, but for rounding): halved
+// down to the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, no other search would
+// clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with a lower bound as close to that time
+// as a certificate on what is before it allows.
 #pragma once
 
 #include <meeting.hpp>
@@ -20,7 +21,7 @@ FASTCCD_INLINE RelativeMotion<L> motion_of(const PairCoefficientsOf<L>& pair)
 }
 
 /// When the pair, apart along coordinate axes at the start, is no longer apart along the last of them: 0 if along none, 1 if it stays so.
-/// And before that, when the gap is three times its bound (a number for each axis). Guesses.
+/// And before that, when a gap that closes is three times its bound (a number for each axis). Guesses.
 template <class L>
 struct LastGap {
     L end, before;
@@ -42,7 +43,7 @@ FASTCCD_INLINE LastGap<L> last_gap(const RelativeMotion<L>& r, const L (&bounds)
                 above = above & less(zero, start);
                 below = below & less(start, zero);
                 const LaneMask<L> closes = (less(zero, start) & less_equal(end, zero)) | (less(start, zero) & less_equal(zero, end));
-                const L closed = start / change;
+                const L closed = start / change;  // anything at all, if it does not close
                 const LaneMask<L> is_first = closes & less(closed, gap.end);
                 gap.end = select<L>(is_first, closed, gap.end);
                 gap.before = select<L>(is_first, closed - broadcast<L>(3.0) * bound / abs(change), gap.before);
@@ -57,7 +58,7 @@ FASTCCD_INLINE LastGap<L> last_gap(const RelativeMotion<L>& r, const L (&bounds)
 }
 
 /// A time of [a, b] to look at, and one before it, when the pair is just certain to be apart; guesses both. Expected: what lies between
-/// them is within [a, b], and no more than half of it.
+/// them, during which rounding hides how far apart it is, is within [a, b], and no more than half of it.
 template <class L>
 struct LikelyTouch {
     L time, before;
@@ -91,14 +92,6 @@ FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L
     return likely_touch(gap.end, gap.before, a, b);
 }
 
-/// Where the pair meets at the time s, eq. 7 included.
-template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> touches_at(const PairCoefficientsOf<L>& pair, L s)
-{
-    const LaneMask<L> meets = meets_at<kind>(pair, s);
-    return Lane<L>::bits(meets) == 0 ? meets : meets & !apart_by_area_on<kind>(pair, s, s);
-}
-
 /// Contact for certain within [a, b]: a strict change of sign, and strict inclusion throughout.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> contact_proven_on(const PairCoefficientsOf<L>& pair, L a, L b)
@@ -128,23 +121,24 @@ FASTCCD_INLINE LaneMask<L> contact_proven_near(const PairCoefficientsOf<L>& pair
 
 /// Of what is computed from the pair at one time: how much smaller lengths may be than the longest one, and areas than the largest one of
 /// the step, for a pair that counts as well shaped. A choice, not a bound: who is well shaped is spared a look.
-inline constexpr double least_share = 0x1p-7;
+inline constexpr double least_share = 0x1p-5;
 
 /// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some
-/// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp), is the largest at any time of the step. A height
+/// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp), is as large as any at any time of the step. A height
 /// is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
 {
     const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
-        // p + q + t is twice the area; r1 x (r3 - r2) is -(t + p)
+        // p + q + t is twice the area; of two edges, r1 x (r3 - r2) is t - p
         const auto& edges = pair.edges[axis];
         const L rest = broadcast<L>(1.0) - s;
         L area = broadcast<L>(0.0), bound = area;
         for (int edge = 0; edge < (kind == PairKind::vertex_face ? 3 : 4); ++edge) {
             const auto& f = edges[edge];
-            if (kind == PairKind::vertex_face || edge % 2 == 0)
-                area = area + ((rest * f.start + broadcast<L>(2.0) * s * f.middle) * rest + s * s * f.end);
+            const L value = (rest * f.start + broadcast<L>(2.0) * s * f.middle) * rest + s * s * f.end;
+            if (kind == PairKind::vertex_face || edge == 2) area = area + value;
+            if (kind == PairKind::edge_edge && edge == 0) area = area - value;
             bound = max(bound, f.bound);
         }
         return less(broadcast<L>(0x1p49 * least_share) * bound, abs(area));
@@ -168,7 +162,7 @@ FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s
     return in_line;
 }
 
-/// Whether a vertex of one is where a vertex of the other is, at s, as far as rounding can tell: whatever their shapes, they are as close.
+/// Whether a vertex of one is where a vertex of the other is, at s, to within the bound of gaps: whatever their shapes, they are as close.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L s)
 {
@@ -188,7 +182,7 @@ FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L 
     return any;
 }
 
-/// Whether rounding is not amplified by the pair's shape.
+/// Whether rounding is not amplified by the pair's shape, for a pair that meets at s.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s)
 {
@@ -215,8 +209,9 @@ FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b)
 {
     const auto touch_at = [&](const LikelyTouch<L>& likely) FASTCCD_INLINE_LAMBDA -> Touch<L> {
         LaneMask<L> present = likely.expected;
-        if (Lane<L>::bits(present) != 0) present = present & touches_at<kind>(pair, likely.time);
+        if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(pair, likely.time);
         if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, likely.time);
+        if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, a, b);
         if (Lane<L>::bits(present) != 0) present = present & apart_on<kind>(pair, a, max(a, likely.before));
         return {present, likely.time, likely.before};
     };

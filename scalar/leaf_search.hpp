@@ -88,10 +88,10 @@ public:
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
     /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which fewer than
-    /// that many have not come to. Not where it touches, which is neither.
+    /// that many have not come to. Not where it touches: that has been looked at, in another way (well_shaped_at).
     [[nodiscard]] bool in_doubt(double s) const
     {
-        return touch == none && (search.intervals >= most_intervals_in_leaf || !pair.well_shaped(s));
+        return touch == none && (search.intervals >= most_intervals_in_leaf || !pair.has_area(s));
     }
 
     [[nodiscard]] unsigned intervals() const { return search.intervals; }

@@ -46,7 +46,7 @@ public:
     [[nodiscard]] Touch<double> touch(Interval i) const { return touch_on<kind>(pair, i.a, i.b); }
     [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair, i.a, i.b).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair, s).value; }
-    [[nodiscard]] bool well_shaped(double s) const { return well_shaped_at<kind>(pair, s).value; }
+    [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair, s).value; }
 
     /// For kernels that take several intervals at a time.
     [[nodiscard]] const PairCoefficients& coefficients() const { return pair; }

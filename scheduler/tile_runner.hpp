@@ -1,4 +1,4 @@
-// One tile from input to results: the lanes, then the certified search for what they left undecided.
+// One tile from input to results: the lanes, then touching pairs, then the certified search for what is left undecided.
 #pragma once
 
 #include <bit>

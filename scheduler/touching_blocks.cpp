@@ -18,7 +18,7 @@ public:
         double pair[pair_coordinates];
         load_pair(job.kind, job.source, first + i, pair);
         for (std::size_t c = 0; c < pair_coordinates; ++c) coordinates[c][size] = pair[c];
-        answers.time[size] = scratch.touch_time[i];
+        answers.left[size] = scratch.touch_time[i];
         numbers[size++] = i;
         if (size == block_pairs) decide();
     }
@@ -28,7 +28,7 @@ public:
         if (size == 0) return;
         for (std::size_t lane = size; lane < block_pairs; ++lane) {  // the first one again
             for (double(&row)[block_pairs] : coordinates) row[lane] = row[0];
-            answers.time[lane] = answers.time[0];
+            answers.left[lane] = answers.left[0];
         }
         job.kernels->contact_in_leaves(job.kind, coordinates[0], job.parameters, answers);
         for (std::size_t lane = 0; lane < size; ++lane) {

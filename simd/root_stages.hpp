@@ -97,7 +97,7 @@ private:
             PairRecord<L> record;
             read(scratch.candidates, i, record);
             record.scale = scale;
-            look_at_quarters(record, lanes & ~certain);
+            look_at_gaps(record, left_by_quarters(record, lanes & ~certain));
         }
 
         const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
@@ -120,22 +120,21 @@ private:
     }
 
     /// The last look at pairs whose cubic is too close to zero to tell exactly where it changes sign, as that of edges that stay
-    /// parallel: most of them are clearly apart. Rare, so out of the way of the others.
-    __attribute__((noinline)) void look_at_quarters(const PairRecord<L>& record, unsigned lanes)
+    /// parallel: most of them are clearly apart. Returns the others. Rare, so out of the way.
+    __attribute__((noinline)) unsigned left_by_quarters(const PairRecord<L>& record, unsigned lanes) const
     {
-        if (parameters.leaf_width > 0.25) return leave_undecided(scratch, record.pair, lanes);  // a leaf is more than a quarter
+        if (parameters.leaf_width > 0.25) return lanes;  // a leaf is more than a quarter
         const Window<L> window = window_of(record.pair);
         const ApartOnHalves<L> apart = quarters_certificate<kind>(record.r, record.scale, parameters.bounds.on_part());
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
         const LaneMask<L> first = apart.first | less(zero, window.low), second = apart.second | less(window.high, one);
-        lanes &= ~Lane<L>::bits(first & second);
-        if (lanes != 0) look_at_gaps(record, lanes);
+        return lanes & ~Lane<L>::bits(first & second);
     }
 
-    /// Pairs that coordinate axes keep apart, until the last gap ends in a leaf where they may touch.
-    FASTCCD_INLINE void look_at_gaps(const PairRecord<L>& record, unsigned lanes)
+    /// Pairs that coordinate axes keep apart, until the last gap ends in a leaf where they may touch. The others are left undecided.
+    __attribute__((noinline)) void look_at_gaps(const PairRecord<L>& record, unsigned lanes)
     {
-        if (may_note_touches) {
+        if (may_note_touches && lanes != 0) {
             const L zero = broadcast<L>(0.0), no_bounds[] = {zero, zero, zero};
             const Leaf leaf = leaf_around(last_gap<kind>(record.r, no_bounds).end);
             const RelativeMotion<L> before{{record.r.start[0], record.r.start[1], record.r.start[2]},
@@ -317,6 +316,7 @@ private:
         const unsigned crossing = lanes & Lane<L>::bits(crosses);
         const unsigned contact = crossing & Lane<L>::bits(inclusion.present);
         unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
+        // The search looks at eq. 7, by the same text, before it asks whether a pair touches.
         if ((undecided & crossing) != 0)
             undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds)));
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
@@ -328,7 +328,8 @@ private:
     __attribute__((noinline)) void look_again(const PairRecord<L>& root, unsigned lanes)
     {
         lanes &= ~Lane<L>::bits(look_around(root).absent);
-        if (may_note_touches) {
+        if (lanes != 0) lanes = left_by_quarters(root, lanes);
+        if (may_note_touches && lanes != 0) {
             // f has one strict sign from the bracket's low side, and a leaf before it, to the leaf.
             const Leaf leaf = leaf_around(root.guess);
             const L w = broadcast<L>(parameters.leaf_width), zero = broadcast<L>(0.0);
@@ -340,7 +341,7 @@ private:
             note_touches(scratch, root.pair, leaf.left, noted);
             lanes &= ~noted;
         }
-        if (lanes != 0) look_at_quarters(root, lanes);
+        look_at_gaps(root, lanes);
     }
 
     /// The leaf that holds `time`, or the one before it if `time` is close to its start.

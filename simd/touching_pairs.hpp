@@ -35,7 +35,7 @@ struct LeafContacts {
 
 /// What the search finds in the leaves that start at `left`, for pairs that are in contact there, proven or as far as rounding can tell.
 template <PairKind kind, class L>
-FASTCCD_INLINE LeafContacts<L> contact_in_leaf(const PairCoefficientsOf<L>& pair, L left, L width)
+FASTCCD_INLINE LeafContacts<L> answer_in_leaf(const PairCoefficientsOf<L>& pair, L left, L width)
 {
     const L right = left + width;
     const LaneMask<L> proven = contact_proven_on<kind>(pair, left, right);
@@ -66,15 +66,15 @@ FASTCCD_INLINE void contact_in_leaves(const double* coordinates, unsigned first,
         apart = find_coefficients<kind>(r, r, parameters.bounds, pair);
     }
 
-    const L left = Lane<L>::load(&answers.time[first]), width = broadcast<L>(parameters.leaf_width), next = left + width;
-    const LeafContacts<L> here = contact_in_leaf<kind>(pair, left, width);
+    const L left = Lane<L>::load(&answers.left[first]), width = broadcast<L>(parameters.leaf_width), next = left + width;
+    const LeafContacts<L> here = answer_in_leaf<kind>(pair, left, width);
     const unsigned known = Lane<L>::bits(unscaled & !apart);
     unsigned reported = known & Lane<L>::bits(here.reported), proven = known & Lane<L>::bits(here.proven);
     Lane<L>::store(&answers.time[first], here.time);
     LaneMask<L> open = less_equal(next + width, broadcast<L>(1.0)) & (!here.reported);
     if ((known & Lane<L>::bits(open)) != 0) open = open & apart_on<kind>(pair, left, next);
     if ((known & Lane<L>::bits(open)) != 0) {
-        const LeafContacts<L> there = contact_in_leaf<kind>(pair, next, width);
+        const LeafContacts<L> there = answer_in_leaf<kind>(pair, next, width);
         reported |= known & Lane<L>::bits(open & there.reported);
         proven |= known & Lane<L>::bits(open & there.proven);
         Lane<L>::store(&answers.time[first], select<L>(open, there.time, here.time));
