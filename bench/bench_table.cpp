@@ -87,6 +87,7 @@ std::vector<Case> all_cases()
 
 bool in_default_selection(const Case& c)
 {
+    if (c.data == "grids") return c.layout == Layout::indexed && c.question == Question::dense && c.threads == 1;
     const bool native = c.scalar == PairView::Scalar::float64 &&
                         (c.layout == Layout::blocked || c.layout == Layout::indexed);
     if (!native)

@@ -27,6 +27,9 @@ constexpr std::uint64_t random_seed = 1;
 /// Vertices along a side of the generated cloth: as many pairs, roughly, as the public cloth-ball step has.
 constexpr int generated_size = 500;
 
+/// Vertices along a side of a sheet of "grids".
+constexpr int grid_size = 200;
+
 struct PublicScene {
     const char* name;
     const char* start;
@@ -44,6 +47,24 @@ SceneStep generated_scene()
     return {scene.positions(0), scene.positions(1), scene.faces(), tools::unique_edges(scene.faces())};
 }
 
+/// Two horizontal sheets of the same grid, of which the upper one falls through the lower one: every contact is at a side, at an
+/// end, or along an edge.
+SceneStep grids()
+{
+    SceneStep step;
+    for (int sheet = 0; sheet < 2; ++sheet)
+        for (int i = 0; i < grid_size; ++i)
+            for (int j = 0; j < grid_size; ++j) {
+                step.start.insert(step.start.end(), {static_cast<double>(i), static_cast<double>(j), static_cast<double>(sheet)});
+                step.end.insert(step.end.end(), {static_cast<double>(i), static_cast<double>(j), sheet == 0 ? 0.0 : -0.7});
+                const std::int32_t k = (sheet * grid_size + i) * grid_size + j;
+                if (i + 1 < grid_size && j + 1 < grid_size)
+                    step.faces.insert(step.faces.end(), {k, k + 1, k + grid_size, k + 1, k + grid_size + 1, k + grid_size});
+            }
+    step.edges = tools::unique_edges(step.faces);
+    return step;
+}
+
 SceneStep public_scene(const PublicScene& scene)
 {
     const fs::path data = data_directory().value();
@@ -58,6 +79,7 @@ SceneStep public_scene(const PublicScene& scene)
 SceneStep make_scene(const std::string& name)
 {
     if (name == "generated") return generated_scene();
+    if (name == "grids") return grids();
     for (const PublicScene& scene : public_scenes)
         if (name == scene.name) return public_scene(scene);
     throw std::runtime_error("no data set is called " + name);
@@ -122,7 +144,7 @@ std::optional<fs::path> data_directory()
 
 std::vector<std::string> available_datasets()
 {
-    std::vector<std::string> names{"random", "generated"};
+    std::vector<std::string> names{"random", "generated", "grids"};
     if (const auto data = data_directory())
         for (const PublicScene& scene : public_scenes)
             if (fs::exists(*data / scene.start) && fs::exists(*data / scene.end)) names.emplace_back(scene.name);

@@ -18,6 +18,7 @@
 #include <fastccd/fastccd.hpp>
 #include <fastccd/isa.hpp>
 #include <kernel_table.hpp>
+#include <touching_blocks.hpp>
 
 #include "bench_main.hpp"
 #include "bench_table.hpp"
@@ -42,16 +43,18 @@ void append_pair(const PairView& pairs, std::size_t i, std::vector<double>& coor
     for (std::size_t c = 0; c < pair_coordinates; ++c) coordinates.push_back(block[c * block_pairs]);
 }
 
-/// Runs the pipeline alone, without the searches; visit(i) for each pair that it leaves undecided.
+/// Runs the lanes' stages alone, without the searches; visit(i) for each pair that they leave undecided.
 template <class Visit>
 void run_pipeline(PairKind kind, Isa isa, const PairView& view, const SearchParameters& parameters, TileScratch& scratch, Visit visit)
 {
     PairSource source{};
     source.view = &view;
     source.size = view.size();
+    const Job job{kind, source, parameters, kernel_table(isa), false};
     for (std::size_t first = 0; first < view.size(); first += tile_pairs) {
         const std::size_t count = std::min(tile_pairs, view.size() - first);
-        kernel_table(isa)->run_tile({kind, &source, first, count, &parameters, 1.0, preferences()}, scratch);
+        job.kernels->run_tile({kind, &source, first, count, &parameters, 1.0, preferences()}, scratch);
+        decide_touching(job, first, count, scratch);
         for (std::size_t i = 0; i < count; ++i)
             if ((scratch.is_undecided[i / 64] >> i % 64 & 1) != 0) visit(first + i);
     }
