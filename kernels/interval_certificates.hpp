@@ -22,6 +22,16 @@ FASTCCD_INLINE L in_lanes(const T& of_pair)
         return broadcast<L>(of_pair);
 }
 
+template <class L, class T>
+FASTCCD_INLINE RelativeMotion<L> motion_of(const PairCoefficientsOf<T>& pair)
+{
+    const auto vector = [](const T* v) FASTCCD_INLINE_LAMBDA -> Vector3<L> {
+        return {in_lanes<L>(v[0]), in_lanes<L>(v[1]), in_lanes<L>(v[2])};
+    };
+    return {{vector(pair.start[0]), vector(pair.start[1]), vector(pair.start[2])},
+            {vector(pair.end[0]), vector(pair.end[1]), vector(pair.end[2])}};
+}
+
 /// Bernstein coefficients of the coplanarity cubic on [a, b], each within cubic_bound.
 template <class T, class L>
 FASTCCD_INLINE Cubic<L> coplanarity_on(const PairCoefficientsOf<T>& pair, L a, L b)
@@ -99,13 +109,8 @@ FASTCCD_INLINE LaneMask<L> apart_on(const PairCoefficientsOf<T>& pair, L a, L b,
 template <PairKind kind, class T, class L>
 FASTCCD_INLINE LaneMask<L> apart_by_area_on(const PairCoefficientsOf<T>& pair, L a, L b)
 {
-    const auto vector = [](const T* v) FASTCCD_INLINE_LAMBDA -> Vector3<L> {
-        return {in_lanes<L>(v[0]), in_lanes<L>(v[1]), in_lanes<L>(v[2])};
-    };
-    const RelativeMotion<L> r{{vector(pair.start[0]), vector(pair.start[1]), vector(pair.start[2])},
-                              {vector(pair.end[0]), vector(pair.end[1]), vector(pair.end[2])}};
     const L half = broadcast<L>(0.5) * (b - a);
-    return area_certificate<kind>(r, {in_lanes<L>(pair.edge), in_lanes<L>(pair.speed)}, in_lanes<L>(pair.area_rounding), a + half, half);
+    return area_certificate<kind>(motion_of<L>(pair), {in_lanes<L>(pair.edge), in_lanes<L>(pair.speed)}, in_lanes<L>(pair.area_rounding), a + half, half);
 }
 
 /// The cubic has strict opposite signs at both ends of [a, b].

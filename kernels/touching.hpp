@@ -12,14 +12,6 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-template <class L>
-FASTCCD_INLINE RelativeMotion<L> motion_of(const PairCoefficientsOf<L>& pair)
-{
-    const auto vector = [](const L* v) FASTCCD_INLINE_LAMBDA -> Vector3<L> { return {v[0], v[1], v[2]}; };
-    return {{vector(pair.start[0]), vector(pair.start[1]), vector(pair.start[2])},
-            {vector(pair.end[0]), vector(pair.end[1]), vector(pair.end[2])}};
-}
-
 /// When the pair, apart along coordinate axes at the start, is no longer apart along the last of them: 0 if along none, 1 if it stays so.
 /// And before that, when a gap that closes is three times its bound (a number for each axis). Guesses.
 template <class L>
@@ -88,7 +80,7 @@ FASTCCD_INLINE LikelyTouch<L> touch_by_cubic(const PairCoefficientsOf<L>& pair, 
 template <PairKind kind, class L>
 FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L a, L b)
 {
-    const LastGap<L> gap = last_gap<kind>(motion_of(pair), pair.gap_bound);
+    const LastGap<L> gap = last_gap<kind>(motion_of<L>(pair), pair.gap_bound);
     return likely_touch(gap.end, gap.before, a, b);
 }
 
@@ -151,7 +143,7 @@ FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
 template <class L>
 FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s)
 {
-    const RelativeMotion<L> r = motion_of(pair);
+    const RelativeMotion<L> r = motion_of<L>(pair);
     const Vector3<L> r1 = position(r, 0, s), second = subtract(position(r, 2, s), position(r, 1, s));
     const L least = broadcast<L>(least_share) * pair.edge;
     LaneMask<L> in_line = less(least, max(abs(r1.x), abs(r1.y), abs(r1.z))) & less(least, max(abs(second.x), abs(second.y), abs(second.z)));

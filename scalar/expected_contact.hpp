@@ -26,8 +26,8 @@ public:
         for (const double value : pieces.value) zero = zero && level(value) == value;
         if (!zero) return;
         next_piece = 3;
-        gaps = pair.kind == PairKind::vertex_face ? last_gap<PairKind::vertex_face>(motion_of(pair), pair.gap_bound).end
-                                                  : last_gap<PairKind::edge_edge>(motion_of(pair), pair.gap_bound).end;
+        gaps = pair.kind == PairKind::vertex_face ? last_gap<PairKind::vertex_face>(motion_of<double>(pair), pair.gap_bound).end
+                                                  : last_gap<PairKind::edge_edge>(motion_of<double>(pair), pair.gap_bound).end;
     }
 
     /// The first one that is not before s; nowhere if there is none.
