@@ -86,7 +86,8 @@ struct TileScratch {
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
     /// Bit i: pair i may be in contact in the leaf that starts at touch_time[i] or in the next one, neither proven nor disproved by the
-    /// lanes; before, it is apart, but for what else they say of it: a proven contact, or that it is undecided.
+    /// lanes; before, it is apart, but for what else they say of it: a proven contact, or that it is undecided. In any leaf, if the time
+    /// is 0.
     std::uint64_t may_touch[tile_pairs / 64];
     double touch_time[tile_pairs];
     double earliest;                           ///< From the lanes: none of their times is before this.
@@ -137,23 +138,25 @@ struct TileRequest {
 /// quotient) and of SearchParameters::time included.
 [[nodiscard]] FASTCCD_INLINE constexpr double time_limit(double cutoff) { return cutoff < 1.0 ? cutoff * (1.0 + 0x1p-49) : 1.0; }
 
-/// A leaf for each pair of a block, and what the certified search reports there.
-struct LeafAnswers {
+/// What the certified search reports of the pairs of a block, as far as lanes can tell: of others none of the bits is set.
+struct TouchAnswers {
     /// Asked: where the leaf starts, not the step's first, such that the search finds the pair apart before it.
     alignas(64) double left[block_pairs];
     alignas(64) double time[block_pairs];  ///< Answered, of the pairs reported.
-    /// Bits of the pairs that are in contact in that leaf or, if that is apart, in the next one; others may be as well.
-    unsigned reported, proven;
+    unsigned reported, proven;             ///< Bits of the pairs that are reported, and of the proven ones of them.
+    unsigned elsewhere;                    ///< Of those that are apart in the leaf asked for and in the next one.
+    unsigned apart;                        ///< Of those that are not reported at all.
 };
 
-using ContactInLeaves = void(PairKind, const double* block, const SearchParameters&, LeafAnswers&);
+using TouchingBlock = void(PairKind, const double* block, const SearchParameters&, TouchAnswers&);
 
 struct KernelTable {
     Isa isa;
     /// Fills time, roots, reported, is_undecided, may_touch, touch_time and earliest of the scratch, and adds to is_unproven. What the
     /// lanes found of an undecided pair is to be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
-    ContactInLeaves* contact_in_leaves;
+    TouchingBlock* contact_in_leaves;  ///< Of pairs that may be in contact in the leaf asked for or, if that is apart, in the next one,
+    TouchingBlock* contact_anywhere;   ///< and of pairs that may be in any.
     /// For the certified search of one pair; null if intervals are better looked at one by one.
     IntervalKernel intervals;
 };

@@ -6,9 +6,10 @@
 //
 // Both are computed. One lerp errs by 2.5 u M at most, M the larger magnitude of its operands: by u M of both products, (1 - s) M + s M in
 // size, by u M of their sum, and by u / 2 M as 1 - s is rounded. Blossoms of n levels err by 2.5 n u C, C the largest coefficient on
-// [0, 1]; a tenth of u is for terms in u^2 and for what is rounded below. So if all coefficients that the search computes on an interval
-// are beyond its bound, a value computed at s within is beyond that bound less twice that much. It is not: so they are not. Of the bound of
-// an edge function, 13 u or more of the sum of its terms, this leaves 3 u at least for the rounding of a value that is zero.
+// [0, 1]. So if all coefficients that the search computes on an interval are beyond its bound, a value computed at s within is beyond that
+// bound less twice that much. It is not: so they are not. The sum or difference of bound and margin is rounded by u C at most, as there are no
+// coefficients beyond a bound that is greater than C; a fifth of u is for terms in u^2. Of the bound of an edge function, 13 u or more
+// of the sum of its terms, this leaves 1.8 u at least for the rounding of a value that is zero.
 #pragma once
 
 #include <interval_certificates.hpp>
@@ -19,12 +20,12 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 template <class L>
 FASTCCD_INLINE L value_margin(const Cubic<L>& f)
 {
-    return broadcast<L>(2 * 7.6 * ErrorBounds::u) * max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
+    return broadcast<L>((2 * 7.5 + 1.2) * ErrorBounds::u) * max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
 }
 template <class L>
 FASTCCD_INLINE L value_margin(const Quadratic<L>& q)
 {
-    return broadcast<L>(2 * 5.1 * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
+    return broadcast<L>((2 * 5.0 + 1.2) * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
 }
 
 /// A vertex along an axis, from start to end.

@@ -46,6 +46,9 @@ FASTCCD_INLINE LaneMask<L> find_coefficients(const RelativeMotion<L>& r, const R
         // rounding of the sum that is compared with its bound above.
         const Scales<L> from_extents = scales(FASTCCD_KERNEL_NAMESPACE::extents(from_x1));
         set_edge(pair, 3, cross_product(from_x1, 1, 2), cross_product_magnitude(from_x1, 1, 2), from_extents, bounds);
+    } else {
+        const L zero = broadcast<L>(0.0);
+        for (auto& edges : pair.edges) edges[3] = {zero, zero, zero, zero};  // a vertex and a face have none
     }
 
     const auto set_vector = [](L (&to)[3], const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { to[0] = v.x, to[1] = v.y, to[2] = v.z; };

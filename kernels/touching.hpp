@@ -1,56 +1,20 @@
-// Contact at the very side or end of a primitive, of edges that stay parallel, or next to the end of a leaf: as of meshes whose vertices lie
-// on the same grid.
+// Contact at the very side or end of a primitive, of edges that stay parallel, of pairs that stay in one plane, or next to the end of a leaf:
+// as of meshes whose vertices lie on the same grid, or in scenes of two dimensions.
 //
 // There nothing proves contact within a leaf, and no part of it, however narrow, does. But where the pair meets, as far as rounding can tell,
 // at some time of the leaf, no part that contains this time has one of the three certificates either (nor eq. 7, but for rounding): halved
 // down to the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, no other search would
 // clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with a lower bound as close to that time
-// as a certificate on what is before it allows.
+// as a certificate on what is before it allows, or the leaf's start, if that is as close.
 #pragma once
 
-#include <meeting.hpp>
+#include <last_certificate.hpp>
+#include <search_parameters.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// When the pair, apart along coordinate axes at the start, is no longer apart along the last of them: 0 if along none, 1 if it stays so.
-/// And before that, when a gap that closes is three times its bound (a number for each axis). Guesses.
-template <class L>
-struct LastGap {
-    L end, before;
-};
-
-template <PairKind kind, class L>
-FASTCCD_INLINE LastGap<L> last_gap(const RelativeMotion<L>& r, const L (&bounds)[3])
-{
-    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-    LastGap<L> last{zero, zero};
-    const auto look_along = [&](L bound, auto component) FASTCCD_INLINE_LAMBDA {
-        const AxisMotion<L> first[] = {{zero, zero}, {component(r.start[0]), component(r.end[0])}};
-        constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
-        LaneMask<L> above = less_equal(zero, zero), below = above;
-        LastGap<L> gap{one, one};  // of all vertices of one to all of the other, the first to close
-        for (int i = 0; i < vertices_of_first; ++i)
-            for (int j = vertices_of_first - 1; j < 3; ++j) {
-                const L start = component(r.start[j]) - first[i].start, end = component(r.end[j]) - first[i].end, change = start - end;
-                above = above & less(zero, start);
-                below = below & less(start, zero);
-                const LaneMask<L> closes = (less(zero, start) & less_equal(end, zero)) | (less(start, zero) & less_equal(zero, end));
-                const L closed = start / change;  // anything at all, if it does not close
-                const LaneMask<L> is_first = closes & less(closed, gap.end);
-                gap.end = select<L>(is_first, closed, gap.end);
-                gap.before = select<L>(is_first, closed - broadcast<L>(3.0) * bound / abs(change), gap.before);
-            }
-        const LaneMask<L> is_last = (above | below) & less(last.end, gap.end);
-        last = {select<L>(is_last, gap.end, last.end), select<L>(is_last, gap.before, last.before)};
-    };
-    look_along(bounds[0], [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; });
-    look_along(bounds[1], [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; });
-    look_along(bounds[2], [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; });
-    return last;
-}
-
-/// A time of [a, b] to look at, and one before it, when the pair is just certain to be apart; guesses both. Expected: what lies between
-/// them, during which rounding hides how far apart it is, is within [a, b], and no more than half of it.
+/// A time of [a, b] to look at, and one not after it, until when the pair is apart on [a, b], or a; guesses both. Expected: what lies between
+/// them, during which rounding hides how far apart it is, is no more than half of [a, b].
 template <class L>
 struct LikelyTouch {
     L time, before;
@@ -60,7 +24,8 @@ struct LikelyTouch {
 template <class L>
 FASTCCD_INLINE LikelyTouch<L> likely_touch(L time, L before, L a, L b)
 {
-    return {time, before, less_equal(time, b) & less(a, before) & less(time - before, broadcast<L>(0.5) * (b - a))};
+    const L within = max(before, a);
+    return {time, within, less_equal(a, time) & less_equal(time, b) & less(time - within, broadcast<L>(0.5) * (b - a))};
 }
 
 /// At the zero of the cubic, if that is beyond its bound at a, by its chord and two corrections.
@@ -80,8 +45,16 @@ FASTCCD_INLINE LikelyTouch<L> touch_by_cubic(const PairCoefficientsOf<L>& pair, 
 template <PairKind kind, class L>
 FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L a, L b)
 {
-    const LastGap<L> gap = last_gap<kind>(motion_of<L>(pair), pair.gap_bound);
-    return likely_touch(gap.end, gap.before, a, b);
+    const CertificateEnd<L> end = last_gap<kind>(pair, a, b);
+    return likely_touch(end.time, end.before, a, b);
+}
+
+/// When the last certificate ends, told better by edge functions for pairs that stay in one plane.
+template <PairKind kind, class L>
+FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PairCoefficientsOf<L>& pair, L a, L b)
+{
+    const CertificateEnd<L> end = last_certificate<kind>(pair, a, b);
+    return likely_touch(end.time, end.before, a, b);
 }
 
 /// Contact for certain within [a, b]: a strict change of sign, and strict inclusion throughout.
@@ -185,33 +158,74 @@ FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s
     return shaped;
 }
 
+/// The start of the leaf that holds `time`.
+template <class L>
+FASTCCD_INLINE L leaf_start(L time, const SearchParameters& parameters)
+{
+    // floor(time / w), by adding and subtracting 2^52 (exact for 0 <= time / w <= 2^50).
+    const L scaled = time * broadcast<L>(parameters.leaf_count);
+    const L nearest = (scaled + broadcast<L>(0x1p52)) - broadcast<L>(0x1p52);
+    return select<L>(less(scaled, nearest), nearest - broadcast<L>(1.0), nearest) * broadcast<L>(parameters.leaf_width);
+}
+
 /// In narrower leaves too few pairs touch for all to be looked at: what rounding hides is too large a part of them.
 inline constexpr double narrowest_touched = 0x1p-44;
 
-/// Whether a pair that is well shaped is in contact in [a, b] for all that rounding can tell, though nothing proves it, and before that
-/// apart for certain, but for the little time that rounding hides.
+/// Whether a pair that is well shaped is in contact in [a, b] for all that rounding can tell, though nothing proves it, and until less than
+/// half of [a, b] before that apart for certain, or before a.
 template <class L>
 struct Touch {
     LaneMask<L> present;
     L time, lower_bound;  ///< When the pair meets; and until when it is apart on [a, b].
 };
 
+/// Of the lanes in `asked`.
 template <PairKind kind, class L>
-FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b)
+FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b, LaneMask<L> asked)
 {
-    const auto touch_at = [&](const LikelyTouch<L>& likely) FASTCCD_INLINE_LAMBDA -> Touch<L> {
-        LaneMask<L> present = likely.expected;
+    Touch<L> found{less(a, a), a, a};
+    const auto look_at = [&](const LikelyTouch<L>& likely) FASTCCD_INLINE_LAMBDA {
+        LaneMask<L> present = asked & likely.expected;
         if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(pair, likely.time);
         if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, likely.time);
         if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, a, b);
-        if (Lane<L>::bits(present) != 0) present = present & apart_on<kind>(pair, a, max(a, likely.before));
-        return {present, likely.time, likely.before};
+        if (Lane<L>::bits(present) != 0) present = present & (less_equal(likely.before, a) | apart_on<kind>(pair, a, likely.before));
+        found = {found.present | present, select<L>(present, likely.time, found.time), select<L>(present, likely.before, found.lower_bound)};
+        asked = asked & !present;
     };
-    const Touch<L> first = touch_at(touch_by_cubic(pair, a, b));
-    if (Lane<L>::bits(!first.present) == 0) return first;
-    const Touch<L> second = touch_at(touch_by_gaps<kind>(pair, a, b));
-    return {first.present | second.present, select<L>(first.present, first.time, second.time),
-            select<L>(first.present, first.lower_bound, second.lower_bound)};
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_cubic(pair, a, b));
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_gaps<kind>(pair, a, b));
+    asked = asked & less_equal(abs(coplanarity_on(pair, a, a).c0), pair.cubic_bound);
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_certificates<kind>(pair, a, b));
+    return found;
+}
+
+/// The cubic at time 0 is zero to within its bound.
+template <class L>
+FASTCCD_INLINE LaneMask<L> zero_at_start(const PairCoefficientsOf<L>& pair)
+{
+    return less_equal(abs(pair.cubic[0]), pair.cubic_bound);
+}
+
+/// Next to time 0 parts of a leaf are halved to this absolute width.
+inline constexpr double finest_at_zero = 0x1p-100;
+
+/// Whether a walk over intervals, earliest first, would come down to time 0 and stop there, as for pairs that rest on one another: one look
+/// instead of a hundred.
+/// - Without eq. 7: certificates on [0, b] need strict signs at 0, too, and coefficients on [0, b] begin with the very values
+///   at 0. Without one at 0 there is none on any [0, b].
+/// - Eq. 7: between two centres the areas change by at most change(distance) (area_inclusion.hpp), and change(d) + change(e) <=
+///   change(d + e). If it fails on the finest part, it fails on every wider one, but for rounding; the first leaf is asked for all the same.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> in_contact_at_start(const PairCoefficientsOf<L>& pair, L leaf_width)
+{
+    const L zero = broadcast<L>(0.0);
+    LaneMask<L> present = zero_at_start(pair);  // as for few
+    if (Lane<L>::bits(present) != 0) present = present & !apart_on<kind>(pair, zero, zero);
+    const L ends[] = {zero, broadcast<L>(finest_at_zero), leaf_width};
+    for (const L& end : ends)
+        if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, zero, end);
+    return present;
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -21,20 +21,20 @@ public:
           pieces{monotone_pieces<double>({pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, 0.0, parameters.bounds,
                                          parameters.leaf_width, 0.0, 1.0)}
     {
-        // Zero throughout: such a pair may touch anywhere, most probably where gaps end.
+        // Zero throughout: such a pair may touch anywhere, most probably where its certificates end.
         bool zero = true;
         for (const double value : pieces.value) zero = zero && level(value) == value;
         if (!zero) return;
         next_piece = 3;
-        gaps = pair.kind == PairKind::vertex_face ? last_gap<PairKind::vertex_face>(motion_of<double>(pair), pair.gap_bound).end
-                                                  : last_gap<PairKind::edge_edge>(motion_of<double>(pair), pair.gap_bound).end;
+        certificates = pair.kind == PairKind::vertex_face ? end_of_certificates<PairKind::vertex_face>(pair)
+                                                          : end_of_certificates<PairKind::edge_edge>(pair);
     }
 
     /// The first one that is not before s; nowhere if there is none.
     double from(double s)
     {
         for (; time < s; ++next_piece) {
-            if (next_piece == 3) return time = s <= gaps ? gaps : nowhere;
+            if (next_piece == 3) return time = s <= certificates ? certificates : nowhere;
             time = in_piece(next_piece);
         }
         return time;
@@ -44,7 +44,7 @@ public:
     /// throughout, what from() answered.
     [[nodiscard]] double root() const
     {
-        if (time == gaps) return gaps;
+        if (time == certificates) return certificates;
         if (next_piece == 0) return nowhere;
         const int k = next_piece - 1;
         if ((pieces.value[k] < 0.0) == (pieces.value[k + 1] < 0.0)) return nowhere;
@@ -53,6 +53,14 @@ public:
 
 private:
     static constexpr double none_yet = -1.0;  ///< Before any time.
+
+    template <PairKind kind>
+    [[nodiscard]] static double end_of_certificates(const PairCoefficients& pair)
+    {
+        CertificateEnd<double> end{0.0, 0.0};  // after four of them, as many as most pairs have
+        for (int k = 0; k < 4; ++k) end = last_certificate<kind>(pair, end.before, 1.0);
+        return end.time;
+    }
 
     /// The value next to zero that a search coming from `value` meets first.
     [[nodiscard]] double level(double value) const { return min(max(value, -bound), bound); }
@@ -71,7 +79,7 @@ private:
     }
 
     double bound;
-    double gaps = nowhere;  ///< Where they end, if the cubic tells nothing.
+    double certificates = nowhere;  ///< Where they end, if the cubic tells nothing.
     MonotonePieces<double> pieces;
     int next_piece = 0;
     double time = none_yet;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <certified_search.hpp>
@@ -28,7 +27,10 @@ public:
         const Interval whole{0.0, 1.0};
         const auto is_leaf = [&](Interval i) { return i.width() <= parameters.leaf_width; };
         search.intervals = 1;
-        if (in_contact_at_start()) return 0.0;
+        if (pair.in_contact_at_start(parameters.leaf_width)) {
+            leaf_of_answer = {0.0, parameters.leaf_width};
+            return 0.0;
+        }
         if (is_leaf(whole)) return contact_in_leaf(whole);
         IntervalStack stack;
         stack.push_halves(whole);  // it has no certificate
@@ -77,7 +79,7 @@ public:
     /// in some interval around s. A root may lie too close to the leaf's end, and inclusion may end in a wide leaf.
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
-        if (s == 0.0 && zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
+        if (s == 0.0 && pair.zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
         // At the cap, contact may have been found in an interval that is wider than a leaf.
         if (pair.contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
         return proof_nearby(touch == none ? s : touch);
@@ -100,28 +102,8 @@ public:
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;
-    /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or, next to time 0, to
-    /// this absolute one.
+    /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or to finest_at_zero.
     static constexpr double finest_relative = 0x1p-52;
-    static constexpr double finest_at_zero = 0x1p-100;
-
-    /// The cubic at time 0 is zero to within its bound.
-    [[nodiscard]] bool zero_at_start() const { return std::abs(pair.coefficients().cubic[0]) <= pair.cubic_bound(); }
-
-    /// Whether the walk would come down to time 0 and stop there, as for pairs that rest on one another: one look instead of a hundred.
-    /// - Without eq. 7: certificates on [0, b] need strict signs at 0, too, and coefficients on [0, b] begin with the very values
-    ///   at 0. Without one at 0 there is none on any [0, b].
-    /// - Eq. 7: between two centres the areas change by at most change(distance) (area_inclusion.hpp), and change(d) + change(e) <=
-    ///   change(d + e). If it fails on the finest part, it fails on every wider one, but for rounding. On the first leaf it is asked
-    ///   for all the same, because that is where lanes ask.
-    bool in_contact_at_start()
-    {
-        if (!zero_at_start()) return false;  // as for most, without a look
-        leaf_of_answer = {0.0, parameters.leaf_width};
-        if (search.one_of_three_apart({0.0, 0.0}, {0.0, finest_at_zero}, leaf_of_answer)) return false;
-        search.intervals += 3;  // counted only now: looking ahead must not bring the walk nearer to its cap
-        return true;
-    }
 
     const PairPolynomials<kind>& pair;
     const SearchParameters& parameters;

@@ -47,19 +47,6 @@ public:
         return std::nullopt;
     }
 
-    /// True if one of the three has a certificate, eq. 7 included. Not counted.
-    [[nodiscard]] bool one_of_three_apart(Interval i, Interval j, Interval k) const
-    {
-        if (!expected) {
-            const auto apart = [&](Interval each) { return pair.apart(each) || pair.apart_by_area(each); };
-            return apart(i) || apart(j) || apart(k);
-        }
-        Questions questions;
-        questions.put(0, i), questions.put(1, j), questions.put(2, k);
-        questions.size = 3;
-        return (ask(questions, true) & 7) != 0;
-    }
-
     unsigned intervals = 0;  ///< Counted.
 
 private:

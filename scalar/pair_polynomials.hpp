@@ -43,9 +43,11 @@ public:
     [[nodiscard]] bool included(Interval i) const { return included_on<kind>(pair, i.a, i.b).value; }
 
     // See touching.hpp.
-    [[nodiscard]] Touch<double> touch(Interval i) const { return touch_on<kind>(pair, i.a, i.b); }
+    [[nodiscard]] Touch<double> touch(Interval i) const { return touch_on<kind>(pair, i.a, i.b, less_equal(i.a, i.b)); }
     [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair, i.a, i.b).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair, s).value; }
+    [[nodiscard]] bool zero_at_start() const { return FASTCCD_KERNEL_NAMESPACE::zero_at_start(pair).value; }
+    [[nodiscard]] bool in_contact_at_start(double leaf_width) const { return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair, leaf_width).value; }
     [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair, s).value; }
 
     /// For kernels that take several intervals at a time.

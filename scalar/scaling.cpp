@@ -78,17 +78,18 @@ RelativeMotion<double> scaled_relative_motion(const double* coordinates, double 
     }
 
     // As for most pairs. Coordinates beyond 2^1021 have differences of 0 or far too large ones, a sixteenth or not.
-    const Extents<double> step = extents(relative_motion<double>(exchanged, 1, 1.0));
-    const RelativeMotion<double> motion = relative_motion<double>(exchanged, 1, t_max);
-    if (all_unscaled(step, t_max == 1.0 ? step : extents(motion))) return motion;
+    const Extents<double> step = extents(relative_motion<double>(coordinates, 1, 1.0));
+    const RelativeMotion<double> from_x0 = relative_motion<double>(coordinates, 1, t_max);
+    if (all_unscaled(step, t_max == 1.0 ? step : extents(from_x0)))
+        return origin == 0 ? from_x0 : relative_motion<double>(exchanged, 1, t_max);
 
     RelativeMotion<double> scaled;
     double Vector3<double>::*const component[] = {&Vector3<double>::x, &Vector3<double>::y, &Vector3<double>::z};
     for (int axis = 0; axis < 3; ++axis) {
-        const AxisDifferences differences{exchanged, axis};
+        const AxisDifferences to_x0{coordinates, axis}, differences{exchanged, axis};
         double start[3] = {}, end[3] = {};
-        if (!differences.zero()) {  // left alone if within_range, scaled to near 1 if not
-            const int exponent = differences.exponent(t_max);
+        if (!to_x0.zero()) {  // left alone if within_range, scaled to near 1 if not
+            const int exponent = to_x0.exponent(t_max);
             differences.put(start, end, t_max, exponent >= -100 && exponent < 100 ? 0 : -exponent);
         }
         for (int i = 0; i < 3; ++i) {

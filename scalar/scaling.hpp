@@ -15,7 +15,7 @@ using namespace FASTCCD_KERNEL_NAMESPACE;
 bool all_finite(const double* coordinates);
 
 /// Motion of a pair of finite coordinates (24, in the order of PairView) relative to point `origin`, which is
-/// exchanged with x0; axes scaled where needed.
+/// exchanged with x0; axes scaled where needed, by the differences to x0 whatever the origin: all functions of a pair are in one scale.
 RelativeMotion<double> scaled_relative_motion(const double* coordinates, double t_max, int origin = 0);
 
 /// Coordinates of x1, x2, x3 along one axis relative to x0, at t = 0 and t = 1, with exponents that reach beyond those of double.

@@ -9,9 +9,13 @@ namespace fastccd {
 namespace {
 
 /// Decided by one call, one pair a lane.
-class TouchingBlock {
+class Block {
 public:
-    TouchingBlock(const Job& j, std::size_t first_pair, TileScratch& s) : job{j}, first{first_pair}, scratch{s} {}
+    /// `other`: for pairs that may be in contact elsewhere than in their leaves.
+    Block(const Job& j, std::size_t first_pair, TileScratch& s, TouchingBlock* k, Block* other)
+        : job{j}, first{first_pair}, scratch{s}, kernel{k}, elsewhere{other}
+    {
+    }
 
     void take(std::size_t i)
     {
@@ -30,18 +34,21 @@ public:
             for (double(&row)[block_pairs] : coordinates) row[lane] = row[0];
             answers.left[lane] = answers.left[0];
         }
-        job.kernels->contact_in_leaves(job.kind, coordinates[0], job.parameters, answers);
+        kernel(job.kind, coordinates[0], job.parameters, answers);
         for (std::size_t lane = 0; lane < size; ++lane) {
+            const auto has = [&](unsigned bits) { return (bits >> lane & 1) != 0; };
             const std::size_t i = numbers[lane];
             const std::uint64_t bit = std::uint64_t{1} << i % 64;
-            if ((answers.reported >> lane & 1) == 0) {
+            if (has(answers.reported)) {
+                scratch.time[i] = answers.time[lane];
+                scratch.earliest = std::min(scratch.earliest, scratch.time[i]);
+                scratch.reported[i / 64] |= bit;
+                if (!has(answers.proven)) scratch.is_unproven[i / 64] |= bit;
+            } else if (has(answers.elsewhere) && elsewhere != nullptr) {
+                elsewhere->take(i);
+            } else if (!has(answers.apart)) {
                 scratch.is_undecided[i / 64] |= bit;
-                continue;
             }
-            scratch.time[i] = answers.time[lane];
-            scratch.earliest = std::min(scratch.earliest, scratch.time[i]);
-            scratch.reported[i / 64] |= bit;
-            if ((answers.proven >> lane & 1) == 0) scratch.is_unproven[i / 64] |= bit;
         }
         size = 0;
     }
@@ -50,8 +57,10 @@ private:
     const Job& job;
     std::size_t first;
     TileScratch& scratch;
+    TouchingBlock* kernel;
+    Block* elsewhere;
     alignas(64) double coordinates[pair_coordinates][block_pairs];
-    LeafAnswers answers;
+    TouchAnswers answers;
     std::size_t numbers[block_pairs], size = 0;
 };
 
@@ -64,12 +73,14 @@ void decide_touching(const Job& job, std::size_t first, std::size_t count, TileS
         return;
     }
     for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.may_touch[w] &= ~scratch.is_undecided[w];
-    TouchingBlock block{job, first, scratch};
+    Block anywhere{job, first, scratch, job.kernels->contact_anywhere, nullptr};
+    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, &anywhere};
     for_each_bit(scratch.may_touch, count, [&](std::size_t i) {
         // A contact that is proven before it needs no other.
-        if (!(scratch.time[i] < scratch.touch_time[i])) block.take(i);
+        if (!(scratch.time[i] < scratch.touch_time[i])) (scratch.touch_time[i] > 0.0 ? in_leaves : anywhere).take(i);
     });
-    block.decide();
+    in_leaves.decide();
+    anywhere.decide();
 }
 
 }  // namespace fastccd

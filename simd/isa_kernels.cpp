@@ -58,6 +58,7 @@ constexpr IntervalKernel interval_kernel()
 }  // namespace
 
 extern const KernelTable table;
-const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, contact_in_leaves_of_block<KernelLane>, interval_kernel<KernelLane>()};
+const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, touching_block<KernelLane, false>, touching_block<KernelLane, true>,
+                        interval_kernel<KernelLane>()};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

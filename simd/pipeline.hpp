@@ -11,11 +11,12 @@
 //                     v              v                             v
 //      leaf as the search       certified search             contact or apart
 //      sees it: contact,             ^
-//      or undecided -----------------+
+//      apart or undecided -----------+
 //
 // [slow] also takes the roots after a pair's first, if that is no contact or if roots are counted. Before a pair is left undecided by
 // the search for its roots, all certificates are tried on quarters of the step. Pairs that touch at a side or an end, or next to the end
-// of a leaf, are noted with that leaf, and decided after the tile, from their coordinates (touching_pairs.hpp).
+// of a leaf, are noted with that leaf, those that have no clear root, as within one plane, without one; they are decided after the tile, from
+// their coordinates (touching_pairs.hpp).
 //
 // The first stages run in single precision where that makes lanes of it, twice as many as of double: differences of coordinates are taken
 // in double, then rounded. They only prove pairs apart, by bounds for that precision (ErrorBounds::screening_in_single), and what they
@@ -32,8 +33,8 @@
 // - "contact in leaf j" is concluded only from a proof (a strict sign change of the cubic over the leaf and
 //   strict inclusion throughout it), so that no certificate of absence can hold there, together with
 //   "apart" for everything before it;
-// - of a pair that may touch in leaf j nothing is concluded but "apart" for everything before that leaf: what the search says of the
-//   leaf itself is asked by its own text, bounds and all.
+// - of a pair that may touch in leaf j nothing is concluded but "apart" for everything before that leaf, and of one that may touch anywhere
+//   nothing at all: what the search says of them is asked by its own text, bounds and all.
 // Everything else is left undecided. So the bits do not depend on the instruction set or the batch.
 #pragma once
 

@@ -97,7 +97,7 @@ private:
             PairRecord<L> record;
             read(scratch.candidates, i, record);
             record.scale = scale;
-            look_at_gaps(record, left_by_quarters(record, lanes & ~certain));
+            note_anywhere(record.pair, left_by_quarters(record, lanes & ~certain));
         }
 
         const LaneMask<L> in_first = opposite_signs(pieces.value[0], pieces.value[1]);
@@ -131,20 +131,13 @@ private:
         return lanes & ~Lane<L>::bits(first & second);
     }
 
-    /// Pairs that coordinate axes keep apart, until the last gap ends in a leaf where they may touch. The others are left undecided.
-    __attribute__((noinline)) void look_at_gaps(const PairRecord<L>& record, unsigned lanes)
+    /// Leaves it to a look at all certificates, from the pair's coordinates, where contact may be.
+    FASTCCD_INLINE void note_anywhere(L pair, unsigned lanes)
     {
-        if (may_note_touches && lanes != 0) {
-            const L zero = broadcast<L>(0.0), no_bounds[] = {zero, zero, zero};
-            const Leaf leaf = leaf_around(last_gap<kind>(record.r, no_bounds).end);
-            const RelativeMotion<L> before{{record.r.start[0], record.r.start[1], record.r.start[2]},
-                                           {position(record.r, 0, leaf.left), position(record.r, 1, leaf.left), position(record.r, 2, leaf.left)}};
-            const LaneMask<L> apart_before = separated_on_part<kind>(before, extents(record.r), parameters.bounds.on_part());
-            const unsigned noted = lanes & Lane<L>::bits(leaf.inner & apart_before);
-            note_touches(scratch, record.pair, leaf.left, noted);
-            lanes &= ~noted;
-        }
-        leave_undecided(scratch, record.pair, lanes);
+        if (may_note_touches)
+            note_touches(scratch, pair, broadcast<L>(0.0), lanes);
+        else
+            leave_undecided(scratch, pair, lanes);
     }
 
     FASTCCD_INLINE void approach_root(unsigned i)
@@ -177,11 +170,7 @@ private:
     FASTCCD_INLINE Leaf leaf_at(L time) const
     {
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-        const L w = broadcast<L>(parameters.leaf_width);
-        // floor(time / w), by adding and subtracting 2^52 (exact for 0 <= time / w <= 2^50).
-        const L scaled = time * broadcast<L>(parameters.leaf_count);
-        const L nearest = (scaled + broadcast<L>(0x1p52)) - broadcast<L>(0x1p52);
-        const L left = select<L>(less(scaled, nearest), nearest - one, nearest) * w;
+        const L w = broadcast<L>(parameters.leaf_width), left = leaf_start(time, parameters);
         const L right = left + w, half = broadcast<L>(0.5) * w;
         return {left, right, left + half, half, less(zero, left) & less_equal(right, one)};
     }
@@ -341,7 +330,7 @@ private:
             note_touches(scratch, root.pair, leaf.left, noted);
             lanes &= ~noted;
         }
-        look_at_gaps(root, lanes);
+        note_anywhere(root.pair, lanes);
     }
 
     /// The leaf that holds `time`, or the one before it if `time` is close to its start.

@@ -1,16 +1,17 @@
 // Contact at a side, at an end, or next to the end of a leaf, which is reported without halving the leaf (kernels/touching.hpp): the verdict
-// that halving would give, times that are not late, the same from lanes as from the search, and meshes on one grid at the lanes' speed.
+// that halving would give, times that are not late, and the same from lanes as from the search.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <limits>
 #include <random>
 
 #include <certified_search.hpp>
 #include <kernel_table.hpp>
 #include <leaf_search.hpp>
+#include <touching_pairs.hpp>
 
 #include "amount.hpp"
 #include "generators.hpp"
@@ -66,7 +67,7 @@ bool halving_reports(const scalar::PairPolynomials<kind>& pair, scalar::Interval
 
 template <PairKind kind>
 void compare_with_halving(const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters, const std::string& what,
-                          std::size_t& touches)
+                          std::size_t& touches, std::size_t& at_leaf_start)
 {
     std::mt19937_64 bits{811};
     for (const oracle::Pair& pair : pairs) {
@@ -79,9 +80,11 @@ void compare_with_halving(const std::vector<oracle::Pair>& pairs, const SearchPa
             const auto touch = polynomials.touch(leaf);
             if (!touch.present.value) continue;
             ++touches;
-            ASSERT_TRUE(leaf.contains(touch.time) && leaf.contains(touch.lower_bound) && touch.lower_bound < touch.time)
+            ASSERT_TRUE(leaf.contains(touch.time) && leaf.contains(touch.lower_bound) && touch.lower_bound <= touch.time)
                 << what << ": " << lossless(pair);
-            ASSERT_TRUE(polynomials.apart({leaf.a, touch.lower_bound})) << what << ": " << lossless(pair);
+            ASSERT_LE(touch.time - touch.lower_bound, 0.5 * leaf.width()) << what << ": " << lossless(pair);
+            ASSERT_TRUE(touch.lower_bound == leaf.a || polynomials.apart({leaf.a, touch.lower_bound})) << what << ": " << lossless(pair);
+            at_leaf_start += touch.lower_bound == leaf.a;
             ASSERT_TRUE(halving_reports(polynomials, leaf)) << what << ": " << lossless(pair);
             for (int k = 0; k < 8; ++k) {
                 const double reach = leaf.width() * std::ldexp(1.0, -static_cast<int>(bits() % 40));
@@ -97,16 +100,18 @@ TEST(Touching, IsReportedByHalvingToo)
     for (const auto kind : kinds)
         for (const double tolerance : {1e-4, 1e-9, 1e-12})
             for (const double t_max : {1.0, 0.7}) {
-                std::size_t touches = 0;
+                std::size_t touches = 0, at_leaf_start = 0;
                 const SearchParameters parameters{tolerance, t_max, false};
                 for_each_family(kind, 812, amount(300), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
                     if (kind == oracle::Kind::vertex_face)
-                        compare_with_halving<PairKind::vertex_face>(pairs, parameters, family, touches);
+                        compare_with_halving<PairKind::vertex_face>(pairs, parameters, family, touches, at_leaf_start);
                     else
-                        compare_with_halving<PairKind::edge_edge>(pairs, parameters, family, touches);
+                        compare_with_halving<PairKind::edge_edge>(pairs, parameters, family, touches, at_leaf_start);
                 });
-                std::printf("%s, E_tol %g, t_max %g: %zu leaves in which pairs touch\n", kind_name(kind), tolerance, t_max, touches);
+                std::printf("%s, E_tol %g, t_max %g: %zu leaves in which pairs touch, in %zu at their start\n", kind_name(kind), tolerance, t_max,
+                            touches, at_leaf_start);
                 EXPECT_GT(touches, amount(500));
+                EXPECT_GT(at_leaf_start, amount(50));
             }
 }
 
@@ -136,7 +141,8 @@ TEST(Touching, TimesAreNeitherLateNorEarly)
         for (const double tolerance : {1e-4, 1e-9, 1e-12}) {
             std::size_t touches = 0;
             const SearchParameters parameters{tolerance, 1.0, false};
-            for (const char* family : {"boundary", "f32_boundary", "f32_near_boundary", "collinear", "zero_cubic", "parallel_vel", "binarygrid"}) {
+            for (const char* family : {"boundary", "f32_boundary", "f32_near_boundary", "collinear", "zero_cubic", "parallel_vel", "binarygrid", "coplanar_map",
+                                       "coplanar_grid"}) {
                 std::vector<oracle::Pair> pairs;
                 generate(family, kind, 813, amount(300), pairs);
                 if (kind == oracle::Kind::vertex_face)
@@ -228,55 +234,70 @@ TEST(Touching, ShapeDoesNotDependOnTheOrderOfEdges)
 }
 
 struct Compared {
-    std::size_t asked = 0, reported = 0, in_next = 0, proven = 0;
+    std::size_t asked = 0, reported = 0, in_next = 0, proven = 0, anywhere = 0, at_start = 0, apart = 0;
 };
 
-/// Asks lanes for the leaf that the search answers with, and for the one before it.
+/// Asks lanes for the leaf that the search answers with, for the one before it, and for any.
 template <PairKind kind>
 void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters,
                    const std::string& what, Compared& seen)
 {
-    LeafAnswers answers;
-    alignas(64) double block[pair_coordinates][block_pairs];
-    std::vector<const oracle::Pair*> asked;
-    std::vector<scalar::SearchResult> expected;
-    const auto compare = [&] {
+    struct Question {
+        const oracle::Pair* pair;
+        double left;  // 0: anywhere
+        scalar::SearchResult expected;
+    };
+    const auto compare = [&](std::vector<Question>& asked) {
+        if (asked.empty()) return;
+        TouchAnswers answers;
+        alignas(64) double block[pair_coordinates][block_pairs];
         for (std::size_t lane = 0; lane < block_pairs; ++lane) {
-            const std::size_t i = std::min(lane, asked.size() - 1);
-            for (std::size_t c = 0; c < pair_coordinates; ++c) block[c][lane] = (*asked[i])[c / 3][c % 3];
-            if (lane > i) answers.left[lane] = answers.left[i];
+            const Question& question = asked[std::min(lane, asked.size() - 1)];
+            for (std::size_t c = 0; c < pair_coordinates; ++c) block[c][lane] = (*question.pair)[c / 3][c % 3];
+            answers.left[lane] = question.left;
         }
-        kernels.contact_in_leaves(kind, block[0], parameters, answers);
+        const bool anywhere = asked.front().left == 0.0;
+        (anywhere ? kernels.contact_anywhere : kernels.contact_in_leaves)(kind, block[0], parameters, answers);
         for (std::size_t i = 0; i < asked.size(); ++i) {
+            const auto& [pair, left, expected] = asked[i];
             ++seen.asked;
+            if ((answers.apart >> i & 1) != 0) {
+                ++seen.apart;
+                ASSERT_EQ(expected.toi, std::numeric_limits<double>::infinity()) << what << ": " << lossless(*pair);
+                ASSERT_EQ(answers.reported >> i & 1, 0u) << what << ": " << lossless(*pair);
+            }
             if ((answers.reported >> i & 1) == 0) continue;
             const bool proven = (answers.proven >> i & 1) != 0;
-            ASSERT_EQ(parameters.time(answers.time[i]), expected[i].toi) << what << ": " << lossless(*asked[i]);
-            ASSERT_EQ(proven, expected[i].proof != scalar::Proof::none) << what << ": " << lossless(*asked[i]);
+            ASSERT_EQ(parameters.time(answers.time[i]), expected.toi) << what << ": " << lossless(*pair);
+            ASSERT_EQ(proven, expected.proof != scalar::Proof::none) << what << ": " << lossless(*pair);
             ++seen.reported;
-            seen.in_next += answers.time[i] >= answers.left[i] + parameters.leaf_width;
+            if (anywhere)
+                ++(answers.time[i] > 0.0 ? seen.anywhere : seen.at_start);
+            else
+                seen.in_next += answers.time[i] >= left + parameters.leaf_width;
             seen.proven += proven;
         }
         asked.clear();
-        expected.clear();
+    };
+    std::vector<Question> in_leaves, anywhere;
+    const auto ask = [&](std::vector<Question>& asked, const Question& question) {
+        asked.push_back(question);
+        if (asked.size() == block_pairs) compare(asked);
     };
     for (const oracle::Pair& pair : pairs) {
         const scalar::SearchResult found = scalar::certified_search(kind, pair[0].data(), parameters);
+        ask(anywhere, {&pair, 0.0, found});
         // Of a pair that is apart, where contact would be.
         const double near = std::isfinite(found.toi)
                                 ? found.toi / parameters.t_max
                                 : scalar::ExpectedContact{scalar::PairPolynomials<kind>{pair[0].data(), parameters}.coefficients(), parameters}.from(0.0);
-        if (!std::isfinite(near)) continue;
-        for (const scalar::Interval leaf : leaves_around(near, parameters)) {
-            if (parameters.time(leaf.a) > found.toi) continue;  // lanes ask only where the search comes to
-            answers.left[asked.size()] = leaf.a;
-            asked.push_back(&pair);
-            expected.push_back(found);
-            if (asked.size() == block_pairs) compare();
-            if (::testing::Test::HasFatalFailure()) return;
-        }
+        if (std::isfinite(near))
+            for (const scalar::Interval leaf : leaves_around(near, parameters))
+                if (parameters.time(leaf.a) <= found.toi) ask(in_leaves, {&pair, leaf.a, found});  // lanes ask only where the search comes to
+        if (::testing::Test::HasFatalFailure()) return;
     }
-    if (!asked.empty()) compare();
+    compare(in_leaves);
+    compare(anywhere);
 }
 
 TEST(Touching, LanesReportWhatTheSearchDoes)
@@ -295,117 +316,53 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
                     });
                     if (HasFatalFailure()) return;
                 }
-            std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu proven\n", name(isa), kind_name(kind), seen.reported,
-                        seen.asked, seen.in_next, seen.proven);
+            std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu in any, %zu at the start, %zu proven; %zu apart\n",
+                        name(isa), kind_name(kind), seen.reported, seen.asked, seen.in_next, seen.anywhere, seen.at_start, seen.proven, seen.apart);
             EXPECT_GT(seen.reported, amount(10000));
             EXPECT_GT(seen.in_next, amount(1000));
             EXPECT_GT(seen.proven, amount(1000));
+            EXPECT_GT(seen.anywhere, amount(1000));
+            EXPECT_GT(seen.at_start, amount(1000));
+            EXPECT_GT(seen.apart, amount(1000));
         }
 }
 
-/// A square grid of points in the plane z = 0, turned and moved.
-struct Grid {
-    int side;
-    std::vector<double> start, end;
-    std::vector<std::int32_t> faces, edges;
-
-    /// Two of them, the upper one, moved by `shift` along its rows, falls through the lower one; `turn` about the vertical axis.
-    Grid(int points, double turn, double shift, double fall, bool single) : side{points}
-    {
-        for (int sheet = 0; sheet < 2; ++sheet) {
-            const auto base = static_cast<std::int32_t>(sheet * side * side);
-            for (int i = 0; i < side; ++i)
-                for (int j = 0; j < side; ++j) {
-                    const auto put = [&](std::vector<double>& to, double x) { to.push_back(single ? static_cast<float>(x) : x); };
-                    const double row = i + sheet * shift;
-                    const double x = std::cos(turn) * row - std::sin(turn) * j, y = std::sin(turn) * row + std::cos(turn) * j;
-                    for (std::vector<double>* ends : {&start, &end}) {
-                        put(*ends, x);
-                        put(*ends, y);
-                        put(*ends, sheet == 0 ? 0.0 : ends == &start ? 1.0 : 1.0 - fall);
-                    }
-                    const std::int32_t k = base + i * side + j;
-                    if (i + 1 < side) edges.insert(edges.end(), {k, k + side});
-                    if (j + 1 < side) edges.insert(edges.end(), {k, k + 1});
-                    if (i + 1 < side && j + 1 < side) {
-                        edges.insert(edges.end(), {k + 1, k + side});
-                        faces.insert(faces.end(), {k, k + 1, k + side, k + 1, k + side + 1, k + side});
-                    }
-                }
-        }
-    }
-
-    [[nodiscard]] MovingMesh mesh() const
-    {
-        const std::size_t vertices = start.size() / 3;
-        return {PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
-                IndexView::rows(faces.data(), faces.size() / 3, 3), IndexView::rows(edges.data(), edges.size() / 2, 2)};
-    }
-};
-
-/// Of the upper sheet against what begins in the same cell of the lower one or next to it, by the first vertex of primitive i.
-template <class Pair>
-std::vector<Pair> neighbours(const Grid& grid, std::size_t first_begin, std::size_t first_end, std::size_t second_end, auto first_vertex,
-                             auto second_vertex)
+template <PairKind kind>
+void expect_apart_before(const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters, const std::string& what,
+                         std::size_t (&pairs_by_number_of_certificates)[3])
 {
-    std::vector<Pair> pairs;
-    const int sheet = grid.side * grid.side;
-    for (std::size_t a = first_begin; a < first_end; ++a)
-        for (std::size_t b = 0; b < second_end; ++b) {
-            const int v = first_vertex(a) - sheet, w = second_vertex(b);
-            if (v < 0 || w >= sheet) continue;
-            if (std::abs(v / grid.side - w / grid.side) > 1 || std::abs(v % grid.side - w % grid.side) > 1) continue;
-            pairs.push_back({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
-        }
-    return pairs;
-}
-
-template <class Pairs>
-void expect_no_search(const Grid& grid, const Pairs& pairs, double tolerance, double t_max, const std::string& what)
-{
-    Options options;
-    options.tolerance = tolerance;
-    options.t_max = t_max;
-    options.reference = true;
-    std::vector<double> expected(pairs.size()), found(pairs.size());
-    const MovingMesh mesh = grid.mesh();
-    Summary searched, summary;
-    ASSERT_TRUE(time_of_impact(mesh, pairs, options, expected, &searched).ok());
-    EXPECT_GT(searched.contacts, pairs.size() / 16) << what;
-    options.reference = false;
-    for (const Isa isa : isas_to_test()) {
-        options.isa = isa;
-        ASSERT_TRUE(time_of_impact(mesh, pairs, options, found, &summary).ok());
-        EXPECT_EQ(0, std::memcmp(expected.data(), found.data(), found.size() * sizeof(double))) << what << ' ' << name(isa);
-        EXPECT_EQ(searched.proven, summary.proven) << what << ' ' << name(isa);
-        EXPECT_LE(100 * summary.scalar_pairs, pairs.size()) << what << ' ' << name(isa) << ": of " << searched.contacts << " contacts";
+    const double width = parameters.leaf_width;
+    for (const oracle::Pair& pair : pairs) {
+        const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
+        if (polynomials.apart()) continue;
+        const double until = FASTCCD_KERNEL_NAMESPACE::apart_from_start<kind>(polynomials.coefficients(), width);
+        if (until == 0.0) continue;
+        ++pairs_by_number_of_certificates[polynomials.apart({0.0, until}) ? 0 : until < 1.0 ? 1 : 2];
+        for (double left = 0.0; left + width <= until; left += width)
+            ASSERT_TRUE(polynomials.apart({left, left + width})) << what << ", " << left << ": " << lossless(pair);
     }
 }
 
-/// Each of these contacts is at a side, an end, or along a whole edge: a microsecond each, if they were left to the search.
-TEST(Touching, MeshesOnOneGridAreDecidedByLanes)
+/// From one certificate to the next: each leaf before is apart for the search, by whatever certificate.
+TEST(Touching, UntilThenEachLeafIsApart)
 {
-    struct Place {
-        double turn, shift;
-    };
-    for (const bool single : {false, true})
-        for (const auto& [turn, shift] : {Place{0.0, 0.0}, {0.3, 0.0}, {0.0, 0.5}, {0.0, 0.25}})
-            for (const double fall : {2.0, 1.7})  // at 0.5, between two leaves, and anywhere
-                for (const double tolerance : {1e-6, 1e-9, 1e-12})
-                    for (const double t_max : {1.0, 0.9}) {
-                        const Grid grid{12, turn, shift, fall, single};
-                        const std::string what = "turn " + std::to_string(turn) + ", shift " + std::to_string(shift) + ", fall " +
-                                                 std::to_string(fall) + ", E_tol " + std::to_string(std::log10(tolerance)) + ", t_max " +
-                                                 std::to_string(t_max);
-                        const auto sheet = static_cast<std::size_t>(grid.side * grid.side);
-                        const auto edge_start = [&](std::size_t e) { return grid.edges[2 * e]; };
-                        const auto vf = neighbours<VertexFace>(grid, sheet, 2 * sheet, grid.faces.size() / 3,
-                                                               [](std::size_t v) { return static_cast<int>(v); },
-                                                               [&](std::size_t f) { return grid.faces[3 * f]; });
-                        const auto ee = neighbours<EdgeEdge>(grid, 0, grid.edges.size() / 2, grid.edges.size() / 2, edge_start, edge_start);
-                        expect_no_search(grid, vf, tolerance, t_max, "vertex-face " + what);
-                        expect_no_search(grid, ee, tolerance, t_max, "edge-edge " + what);
-                    }
+    for (const auto kind : kinds) {
+        std::size_t seen[3] = {};
+        for (const double tolerance : {0x1p-3, 0x1p-9})
+            for (const double t_max : {1.0, 0.7}) {
+                const SearchParameters parameters{tolerance, t_max, false};
+                for_each_family(kind, 819, amount(100), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
+                    if (kind == oracle::Kind::vertex_face)
+                        expect_apart_before<PairKind::vertex_face>(pairs, parameters, family, seen);
+                    else
+                        expect_apart_before<PairKind::edge_edge>(pairs, parameters, family, seen);
+                });
+            }
+        std::printf("%s: by one certificate %zu, by several %zu, throughout %zu\n", kind_name(kind), seen[0], seen[1], seen[2]);
+        EXPECT_GT(seen[0], amount(1000));
+        EXPECT_GT(seen[1], amount(500));
+        EXPECT_GT(seen[2], amount(1000));
+    }
 }
 
 }  // namespace

@@ -1,0 +1,172 @@
+// Scenes in which most contacts are at a side, at an end, or within one plane are decided by lanes (kernels/touching.hpp), with the same bits
+// as by the search, which would take a microsecond or two for each.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fastccd/fastccd.hpp>
+
+#include "amount.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+/// A square grid of points in the plane z = 0, turned and moved.
+struct Grid {
+    int side;
+    std::vector<double> start, end;
+    std::vector<std::int32_t> faces, edges;
+
+    /// Two of them, the upper one, moved by `shift` along its rows, falls through the lower one; `turn` about the vertical axis.
+    Grid(int points, double turn, double shift, double fall, bool single) : side{points}
+    {
+        for (int sheet = 0; sheet < 2; ++sheet) {
+            const auto base = static_cast<std::int32_t>(sheet * side * side);
+            for (int i = 0; i < side; ++i)
+                for (int j = 0; j < side; ++j) {
+                    const auto put = [&](std::vector<double>& to, double x) { to.push_back(single ? static_cast<float>(x) : x); };
+                    const double row = i + sheet * shift;
+                    const double x = std::cos(turn) * row - std::sin(turn) * j, y = std::sin(turn) * row + std::cos(turn) * j;
+                    for (std::vector<double>* ends : {&start, &end}) {
+                        put(*ends, x);
+                        put(*ends, y);
+                        put(*ends, sheet == 0 ? 0.0 : ends == &start ? 1.0 : 1.0 - fall);
+                    }
+                    const std::int32_t k = base + i * side + j;
+                    if (i + 1 < side) edges.insert(edges.end(), {k, k + side});
+                    if (j + 1 < side) edges.insert(edges.end(), {k, k + 1});
+                    if (i + 1 < side && j + 1 < side) {
+                        edges.insert(edges.end(), {k + 1, k + side});
+                        faces.insert(faces.end(), {k, k + 1, k + side, k + 1, k + side + 1, k + side});
+                    }
+                }
+        }
+    }
+
+    [[nodiscard]] MovingMesh mesh() const
+    {
+        const std::size_t vertices = start.size() / 3;
+        return {PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
+                IndexView::rows(faces.data(), faces.size() / 3, 3), IndexView::rows(edges.data(), edges.size() / 2, 2)};
+    }
+};
+
+/// Of the upper sheet against what begins in the same cell of the lower one or next to it, by the first vertex of primitive i.
+template <class Pair>
+std::vector<Pair> neighbours(const Grid& grid, std::size_t first_begin, std::size_t first_end, std::size_t second_end, auto first_vertex,
+                             auto second_vertex)
+{
+    std::vector<Pair> pairs;
+    const int sheet = grid.side * grid.side;
+    for (std::size_t a = first_begin; a < first_end; ++a)
+        for (std::size_t b = 0; b < second_end; ++b) {
+            const int v = first_vertex(a) - sheet, w = second_vertex(b);
+            if (v < 0 || w >= sheet) continue;
+            if (std::abs(v / grid.side - w / grid.side) > 1 || std::abs(v % grid.side - w % grid.side) > 1) continue;
+            pairs.push_back({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b)});
+        }
+    return pairs;
+}
+
+template <class Pairs>
+void expect_no_search(const Grid& grid, const Pairs& pairs, double tolerance, double t_max, const std::string& what)
+{
+    Options options;
+    options.tolerance = tolerance;
+    options.t_max = t_max;
+    options.reference = true;
+    std::vector<double> expected(pairs.size()), found(pairs.size());
+    const MovingMesh mesh = grid.mesh();
+    Summary searched, summary;
+    ASSERT_TRUE(time_of_impact(mesh, pairs, options, expected, &searched).ok());
+    EXPECT_GT(searched.contacts, pairs.size() / 16) << what;
+    options.reference = false;
+    for (const Isa isa : isas_to_test()) {
+        options.isa = isa;
+        ASSERT_TRUE(time_of_impact(mesh, pairs, options, found, &summary).ok());
+        EXPECT_EQ(0, std::memcmp(expected.data(), found.data(), found.size() * sizeof(double))) << what << ' ' << name(isa);
+        EXPECT_EQ(searched.proven, summary.proven) << what << ' ' << name(isa);
+        EXPECT_LE(100 * summary.scalar_pairs, pairs.size()) << what << ' ' << name(isa) << ": of " << searched.contacts << " contacts";
+    }
+}
+
+/// Each of these contacts is at a side, an end, or along a whole edge: a microsecond each, if they were left to the search.
+TEST(Touching, MeshesOnOneGridAreDecidedByLanes)
+{
+    struct Place {
+        double turn, shift;
+    };
+    for (const bool single : {false, true})
+        for (const auto& [turn, shift] : {Place{0.0, 0.0}, {0.3, 0.0}, {0.0, 0.5}, {0.0, 0.25}})
+            for (const double fall : {2.0, 1.7})  // at 0.5, between two leaves, and anywhere
+                for (const double tolerance : {1e-6, 1e-9, 1e-12})
+                    for (const double t_max : {1.0, 0.9}) {
+                        const Grid grid{12, turn, shift, fall, single};
+                        const std::string what = "turn " + std::to_string(turn) + ", shift " + std::to_string(shift) + ", fall " +
+                                                 std::to_string(fall) + ", E_tol " + std::to_string(std::log10(tolerance)) + ", t_max " +
+                                                 std::to_string(t_max);
+                        const auto sheet = static_cast<std::size_t>(grid.side * grid.side);
+                        const auto edge_start = [&](std::size_t e) { return grid.edges[2 * e]; };
+                        const auto vf = neighbours<VertexFace>(grid, sheet, 2 * sheet, grid.faces.size() / 3,
+                                                               [](std::size_t v) { return static_cast<int>(v); },
+                                                               [&](std::size_t f) { return grid.faces[3 * f]; });
+                        const auto ee = neighbours<EdgeEdge>(grid, 0, grid.edges.size() / 2, grid.edges.size() / 2, edge_start, edge_start);
+                        expect_no_search(grid, vf, tolerance, t_max, "vertex-face " + what);
+                        expect_no_search(grid, ee, tolerance, t_max, "edge-edge " + what);
+                    }
+}
+
+/// In one plane z = height, turned about an axis.
+std::vector<oracle::Pair> pairs_in_one_plane(std::size_t count, double height, double turn, bool single)
+{
+    std::mt19937_64 bits{820};
+    const auto uniform = [&] { return std::ldexp(static_cast<double>(bits() >> 11), -53); };
+    std::vector<oracle::Pair> pairs(count);
+    for (oracle::Pair& pair : pairs)
+        for (auto& point : pair) {
+            const double x = uniform(), y = uniform();
+            const double turned[] = {x, std::cos(turn) * y - std::sin(turn) * height, std::sin(turn) * y + std::cos(turn) * height};
+            for (std::size_t axis = 0; axis < 3; ++axis) point[axis] = single ? static_cast<float>(turned[axis]) : turned[axis];
+        }
+    return pairs;
+}
+
+/// As in scenes of two dimensions, where nothing but edge functions and gaps tells when a pair meets. What is thin then is left to the search.
+TEST(Touching, PairsInOnePlaneAreDecidedByLanes)
+{
+    struct Plane {
+        double height, turn;
+    };
+    const std::size_t count = amount(4000);
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
+        for (const auto& [height, turn] : {Plane{0.0, 0.0}, {0.25, 0.0}, {0.25, 0.9}})
+            for (const bool single : {false, true})
+                for (const double tolerance : {1e-6, 1e-9}) {
+                    if (single && turn != 0.0) continue;  // rounded to floats they are in no plane
+                    const std::vector<oracle::Pair> pairs = pairs_in_one_plane(count, height, turn, single);
+                    Options options;
+                    options.tolerance = tolerance;
+                    options.reference = true;
+                    const Answer expected = answer_without_roots(kind, interleaved(pairs), options);
+                    EXPECT_GT(3 * expected.summary.contacts, count);
+                    options.reference = false;
+                    for (const Isa isa : isas_to_test()) {
+                        options.isa = isa;
+                        const Answer found = answer_without_roots(kind, interleaved(pairs), options);
+                        EXPECT_EQ(0, std::memcmp(expected.toi.data(), found.toi.data(), count * sizeof(double))) << kind_name(kind) << ' ' << name(isa);
+                        EXPECT_EQ(expected.summary.proven, found.summary.proven) << kind_name(kind) << ' ' << name(isa);
+                        EXPECT_LE(25 * found.summary.scalar_pairs, count)
+                            << kind_name(kind) << ' ' << name(isa) << ", height " << height << ", turn " << turn << ", E_tol " << tolerance;
+                    }
+                }
+}
+
+}  // namespace
+}  // namespace fastccd::testing
