@@ -144,7 +144,6 @@ struct TouchAnswers {
     alignas(64) double left[block_pairs];
     alignas(64) double time[block_pairs];  ///< Answered, of the pairs reported.
     unsigned reported, proven;             ///< Bits of the pairs that are reported, and of the proven ones of them.
-    unsigned elsewhere;                    ///< Of those that are apart in the leaf asked for and in the next one.
     unsigned apart;                        ///< Of those that are not reported at all.
 };
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <certificates.hpp>
-#include <halves_certificate.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -35,27 +34,23 @@ FASTCCD_INLINE LaneMask<L> separated_on_part(const RelativeMotion<L>& r, const E
            along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, extents.z);
 }
 
-/// By any of the three on both quarters of either half.
+/// Those of `lanes` that are apart, by any of the three on each quarter of [low, high]: of the whole interval or one of its halves.
 template <PairKind kind, class L>
-FASTCCD_INLINE ApartOnHalves<L> quarters_certificate(const RelativeMotion<L>& r, const Scales<L>& scale, const CertificateBounds& bounds)
+FASTCCD_INLINE unsigned apart_on_quarters(const RelativeMotion<L>& r, const Scales<L>& scale, const CertificateBounds& bounds, L low, L high,
+                                          unsigned lanes)
 {
     const Extents<L> whole = extents(r);
-    RelativeMotion<L> quarter = r;
-    const auto next_end = [&](double s) FASTCCD_INLINE_LAMBDA {
+    RelativeMotion<L> quarter{{}, {position(r, 0, broadcast<L>(0.0)), position(r, 1, broadcast<L>(0.0)), position(r, 2, broadcast<L>(0.0))}};
+    for (int k = 0; k < 4 && lanes != 0; ++k) {
+        const L start = broadcast<L>(0.25 * k), end = broadcast<L>(0.25 * (k + 1));
         for (int i = 0; i < 3; ++i) {
             quarter.start[i] = quarter.end[i];
-            quarter.end[i] = position(r, i, broadcast<L>(s));
+            quarter.end[i] = position(r, i, end);
         }
-    };
-    const auto on_next = [&](double end) FASTCCD_INLINE_LAMBDA {
-        next_end(end);
-        return part_certificate<kind>(quarter, scale, bounds) | separated_on_part<kind>(quarter, whole, bounds);
-    };
-    next_end(0.0);
-    LaneMask<L> first = on_next(0.25);
-    first = first & on_next(0.5);
-    LaneMask<L> second = on_next(0.75);
-    return {first, second & on_next(1.0)};
+        const LaneMask<L> outside = less_equal(end, low) | less_equal(high, start);
+        lanes &= Lane<L>::bits(outside | part_certificate<kind>(quarter, scale, bounds) | separated_on_part<kind>(quarter, whole, bounds));
+    }
+    return lanes;
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -41,20 +41,42 @@ FASTCCD_INLINE LikelyTouch<L> touch_by_cubic(const PairCoefficientsOf<L>& pair, 
     return likely;
 }
 
+/// At an end of certificates on [a, b]: `end(room)` as last_certificate. Of the lanes in `asked`.
+template <class L, class End>
+FASTCCD_INLINE LikelyTouch<L> touch_at_end(End end, L a, L b, LaneMask<L> asked)
+{
+    const L time = end(broadcast<L>(0.0));
+    const LaneMask<L> inside = asked & less(a, time) & less_equal(time, b);
+    L before = a;  // where none holds at a
+    if (Lane<L>::bits(inside) != 0) before = select<L>(inside, end(broadcast<L>(beyond_rounding)), a);
+    return likely_touch(time, before, a, b);
+}
+
 /// When gaps end: told better than by the cubic for edges that are nearly parallel.
 template <PairKind kind, class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L a, L b)
+FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L a, L b, LaneMask<L> asked)
 {
-    const CertificateEnd<L> end = last_gap<kind>(pair, a, b);
-    return likely_touch(end.time, end.before, a, b);
+    return touch_at_end([&](L room) FASTCCD_INLINE_LAMBDA { return last_gap<kind>(pair, a, b, room); }, a, b, asked);
 }
 
 /// When the last certificate ends, told better by edge functions for pairs that stay in one plane.
 template <PairKind kind, class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PairCoefficientsOf<L>& pair, L a, L b)
+FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PairCoefficientsOf<L>& pair, L a, L b, LaneMask<L> asked)
 {
-    const CertificateEnd<L> end = last_certificate<kind>(pair, a, b);
-    return likely_touch(end.time, end.before, a, b);
+    return touch_at_end([&](L room) FASTCCD_INLINE_LAMBDA { return last_certificate<kind>(pair, a, b, room); }, a, b, asked);
+}
+
+/// Where the last certificate is lost though nothing comes to zero, as between surfaces that glide along one another with less between them
+/// than rounding hides: shares of [a, b] before and after it at which it very probably holds, and does not.
+inline constexpr double held_before_loss = 0x1p-4, lost_after_loss = 0x1p-2;
+/// In narrower leaves, of which rounding may hide many in a row where thin shapes meet, asking takes longer than it spares.
+inline constexpr double narrowest_lost = 0x1p-36;
+
+template <PairKind kind, class L>
+FASTCCD_INLINE LikelyTouch<L> touch_by_loss(const PairCoefficientsOf<L>& pair, L a, L b)
+{
+    const L lost = last_certificate<kind>(pair, a, b, broadcast<L>(1.0)), width = b - a;
+    return likely_touch(min(lost + broadcast<L>(lost_after_loss) * width, b), lost - broadcast<L>(held_before_loss) * width, a, b);
 }
 
 /// Contact for certain within [a, b]: a strict change of sign, and strict inclusion throughout.
@@ -111,10 +133,10 @@ FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
     return along(0) | along(1) | along(2);
 }
 
-/// Whether two edges, neither much shorter than the pair is large, lie on one line at s as far as rounding can tell: an end's distance
-/// from the other edge's line is an area over a length.
+/// Whether two edges, neither much shorter than the pair is large, lie on one line at s, to within this share of the bounds of edge functions:
+/// an end's distance from the other edge's line is an area over a length.
 template <class L>
-FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s, L share)
 {
     const RelativeMotion<L> r = motion_of<L>(pair);
     const Vector3<L> r1 = position(r, 0, s), second = subtract(position(r, 2, s), position(r, 1, s));
@@ -122,14 +144,16 @@ FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s
     LaneMask<L> in_line = less(least, max(abs(r1.x), abs(r1.y), abs(r1.z))) & less(least, max(abs(second.x), abs(second.y), abs(second.z)));
     for (const auto& edges : pair.edges) {
         if (Lane<L>::bits(in_line) == 0) return in_line;
-        for (const auto& f : edges) in_line = in_line & less_equal(abs(on_interval(Quadratic<L>{f.start, f.middle, f.end}, s, s).c0), f.bound);
+        for (const auto& f : edges)
+            in_line = in_line & less_equal(abs(on_interval(Quadratic<L>{f.start, f.middle, f.end}, s, s).c0), share * f.bound);
     }
     return in_line;
 }
 
-/// Whether a vertex of one is where a vertex of the other is, at s, to within the bound of gaps: whatever their shapes, they are as close.
+/// Whether a vertex of one is where a vertex of the other is, at s, to within this share of the bound of gaps: whatever their shapes, they are
+/// as close.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L s, L share)
 {
     const L zero = broadcast<L>(0.0);
     constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
@@ -140,22 +164,32 @@ FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L 
             for (int axis = 0; axis < 3; ++axis) {
                 const AxisMotion<L> first = i == 0 ? AxisMotion<L>{zero, zero} : AxisMotion<L>{pair.start[0][axis], pair.end[0][axis]};
                 const AxisMotion<L> second{pair.start[j][axis], pair.end[j][axis]};
-                same = same & less_equal(abs(second.at(s) - first.at(s)), pair.gap_bound[axis]);
+                same = same & less_equal(abs(second.at(s) - first.at(s)), share * pair.gap_bound[axis]);
             }
             any = any | same;
         }
     return any;
 }
 
-/// Whether rounding is not amplified by the pair's shape, for a pair that meets at s.
+/// Whether rounding is not amplified by the pair's shape, for a pair that meets at s. `share`: of their bounds, within which what is zero where
+/// they share a vertex or lie in line is told from what is not.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s, L share)
 {
     LaneMask<L> shaped = has_area_at<kind>(pair, s);
-    if (Lane<L>::bits(!shaped) != 0) shaped = shaped | share_vertex_at<kind>(pair, s);
+    if (Lane<L>::bits(!shaped) != 0) shaped = shaped | share_vertex_at<kind>(pair, s, share);
     if constexpr (kind == PairKind::edge_edge)
-        if (Lane<L>::bits(!shaped) != 0) shaped = shaped | are_in_line_at(pair, s);
+        if (Lane<L>::bits(!shaped) != 0) shaped = shaped | are_in_line_at(pair, s, share);
     return shaped;
+}
+
+/// Whether a pair in contact at time 0, as far as its certificates tell (in_contact_at_start), needs no other look. Its vertices are where they
+/// were given then, so what is zero may be asked to be just that: distances along directions tell apart what is not.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> well_shaped_at_start(const PairCoefficientsOf<L>& pair)
+{
+    const L zero = broadcast<L>(0.0);
+    return well_shaped_at<kind>(pair, zero, zero);
 }
 
 /// The start of the leaf that holds `time`.
@@ -187,16 +221,24 @@ FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b, La
     const auto look_at = [&](const LikelyTouch<L>& likely) FASTCCD_INLINE_LAMBDA {
         LaneMask<L> present = asked & likely.expected;
         if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(pair, likely.time);
-        if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, likely.time);
+        if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, likely.time, broadcast<L>(1.0));
         if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, a, b);
         if (Lane<L>::bits(present) != 0) present = present & (less_equal(likely.before, a) | apart_on<kind>(pair, a, likely.before));
         found = {found.present | present, select<L>(present, likely.time, found.time), select<L>(present, likely.before, found.lower_bound)};
         asked = asked & !present;
     };
     if (Lane<L>::bits(asked) != 0) look_at(touch_by_cubic(pair, a, b));
-    if (Lane<L>::bits(asked) != 0) look_at(touch_by_gaps<kind>(pair, a, b));
-    asked = asked & less_equal(abs(coplanarity_on(pair, a, a).c0), pair.cubic_bound);
-    if (Lane<L>::bits(asked) != 0) look_at(touch_by_certificates<kind>(pair, a, b));
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_gaps<kind>(pair, a, b, asked));
+    // The others are for pairs whose volume tells little or nothing.
+    const L volume = abs(coplanarity_on(pair, a, a).c0);
+    const LaneMask<L> nearly_flat = asked & less_equal(volume, broadcast<L>(2.0) * pair.cubic_bound);
+    asked = asked & less_equal(volume, pair.cubic_bound);
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_certificates<kind>(pair, a, b, asked));
+    // What is lost for good is lost at b, too: a look that spares most leaves the rest.
+    asked = nearly_flat & !found.present & less_equal(broadcast<L>(narrowest_lost), b - a);
+    if (Lane<L>::bits(asked) != 0) asked = asked & meets_at<kind>(pair, b);
+    if (Lane<L>::bits(asked) != 0) asked = asked & well_shaped_at<kind>(pair, b, broadcast<L>(1.0));
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_loss<kind>(pair, a, b));
     return found;
 }
 

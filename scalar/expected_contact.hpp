@@ -57,9 +57,9 @@ private:
     template <PairKind kind>
     [[nodiscard]] static double end_of_certificates(const PairCoefficients& pair)
     {
-        CertificateEnd<double> end{0.0, 0.0};  // after four of them, as many as most pairs have
-        for (int k = 0; k < 4; ++k) end = last_certificate<kind>(pair, end.before, 1.0);
-        return end.time;
+        double before = 0.0;  // after four of them, as many as most pairs have
+        for (int k = 0; k < 3; ++k) before = last_certificate<kind>(pair, before, 1.0, beyond_rounding);
+        return last_certificate<kind>(pair, before, 1.0, 0.0);
     }
 
     /// The value next to zero that a search coming from `value` meets first.

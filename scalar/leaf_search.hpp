@@ -29,6 +29,7 @@ public:
         search.intervals = 1;
         if (pair.in_contact_at_start(parameters.leaf_width)) {
             leaf_of_answer = {0.0, parameters.leaf_width};
+            if (pair.well_shaped_at_start()) touch = 0.0;
             return 0.0;
         }
         if (is_leaf(whole)) return contact_in_leaf(whole);

@@ -11,7 +11,7 @@ namespace {
 /// Decided by one call, one pair a lane.
 class Block {
 public:
-    /// `other`: for pairs that may be in contact elsewhere than in their leaves.
+    /// `other`: for pairs that are not answered in their leaves.
     Block(const Job& j, std::size_t first_pair, TileScratch& s, TouchingBlock* k, Block* other)
         : job{j}, first{first_pair}, scratch{s}, kernel{k}, elsewhere{other}
     {
@@ -44,9 +44,11 @@ public:
                 scratch.earliest = std::min(scratch.earliest, scratch.time[i]);
                 scratch.reported[i / 64] |= bit;
                 if (!has(answers.proven)) scratch.is_unproven[i / 64] |= bit;
-            } else if (has(answers.elsewhere) && elsewhere != nullptr) {
+            } else if (has(answers.apart)) {
+                continue;
+            } else if (elsewhere != nullptr) {
                 elsewhere->take(i);
-            } else if (!has(answers.apart)) {
+            } else {
                 scratch.is_undecided[i / 64] |= bit;
             }
         }
@@ -64,6 +66,9 @@ private:
     std::size_t numbers[block_pairs], size = 0;
 };
 
+/// In narrower leaves most of what is not answered comes to the search all the same: random pairs at 1e-13 took 9 to 12 % longer.
+constexpr double narrowest_looked_beyond = 0x1p-40;
+
 }  // namespace
 
 void decide_touching(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch)
@@ -74,7 +79,8 @@ void decide_touching(const Job& job, std::size_t first, std::size_t count, TileS
     }
     for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.may_touch[w] &= ~scratch.is_undecided[w];
     Block anywhere{job, first, scratch, job.kernels->contact_anywhere, nullptr};
-    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, &anywhere};
+    const bool both = job.parameters.leaf_width >= narrowest_looked_beyond;
+    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, both ? &anywhere : nullptr};
     for_each_bit(scratch.may_touch, count, [&](std::size_t i) {
         // A contact that is proven before it needs no other.
         if (!(scratch.time[i] < scratch.touch_time[i])) (scratch.touch_time[i] > 0.0 ? in_leaves : anywhere).take(i);

@@ -125,10 +125,7 @@ private:
     {
         if (parameters.leaf_width > 0.25) return lanes;  // a leaf is more than a quarter
         const Window<L> window = window_of(record.pair);
-        const ApartOnHalves<L> apart = quarters_certificate<kind>(record.r, record.scale, parameters.bounds.on_part());
-        const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-        const LaneMask<L> first = apart.first | less(zero, window.low), second = apart.second | less(window.high, one);
-        return lanes & ~Lane<L>::bits(first & second);
+        return lanes & ~apart_on_quarters<kind>(record.r, record.scale, parameters.bounds.on_part(), window.low, window.high, lanes);
     }
 
     /// Leaves it to a look at all certificates, from the pair's coordinates, where contact may be.

@@ -62,10 +62,8 @@ std::string lane_proof(const oracle::Pair& pair, const SearchParameters& paramet
         (on_halves.first.value && on_halves.second.value))
         return "halves";
 
-    const auto on_quarters = portable::quarters_certificate<kind>(r, scale, bounds.on_part());
-    if ((on_quarters.first.value && i.b <= 0.5) || (on_quarters.second.value && i.a >= 0.5) ||
-        (on_quarters.first.value && on_quarters.second.value))
-        return "quarters";
+    const double low = i.a >= 0.5 ? 0.5 : 0.0, high = low == 0.0 && i.b <= 0.5 ? 0.5 : 1.0;
+    if (portable::apart_on_quarters<kind>(r, scale, bounds.on_part(), low, high, 1) != 0) return "quarters";
 
     for (const double start : {0.0, i.a}) {
         const auto part = portable::RelativeMotion<double>{

@@ -2,12 +2,14 @@
 // as by the search, which would take a microsecond or two for each.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fastccd/fastccd.hpp>
@@ -18,11 +20,22 @@
 namespace fastccd::testing {
 namespace {
 
-/// A square grid of points in the plane z = 0, turned and moved.
-struct Grid {
-    int side;
+/// A mesh at both ends of the step.
+struct Scene {
     std::vector<double> start, end;
     std::vector<std::int32_t> faces, edges;
+
+    [[nodiscard]] MovingMesh mesh() const
+    {
+        const std::size_t vertices = start.size() / 3;
+        return {PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
+                IndexView::rows(faces.data(), faces.size() / 3, 3), IndexView::rows(edges.data(), edges.size() / 2, 2)};
+    }
+};
+
+/// Two square grids of points, turned and moved.
+struct Grid : Scene {
+    int side;
 
     /// Two of them, the upper one, moved by `shift` along its rows, falls through the lower one; `turn` about the vertical axis.
     Grid(int points, double turn, double shift, double fall, bool single) : side{points}
@@ -49,12 +62,46 @@ struct Grid {
                 }
         }
     }
+};
 
-    [[nodiscard]] MovingMesh mesh() const
+/// A wall of bricks, each row on the joints of the one below, in any direction of space.
+struct Wall : Scene {
+    static constexpr int rows = 4, bricks_per_row = 4, corners = 8;
+
+    /// Turned about two axes; all that `at_end` does is move the points of a row.
+    Wall(double turn, auto at_end)
     {
-        const std::size_t vertices = start.size() / 3;
-        return {PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
-                IndexView::rows(faces.data(), faces.size() / 3, 3), IndexView::rows(edges.data(), edges.size() / 2, 2)};
+        for (int row = 0; row < rows; ++row)
+            for (int brick = 0; brick < bricks_per_row; ++brick) add_brick(row, brick + 0.5 * (row % 2), turn, at_end);
+    }
+
+    [[nodiscard]] bool next_to_each_other(std::int32_t v, std::int32_t w) const
+    {
+        const int a = v / corners, b = w / corners;
+        return a != b && std::abs(a / bricks_per_row - b / bricks_per_row) <= 1 && std::abs(a % bricks_per_row - b % bricks_per_row) <= 1;
+    }
+
+private:
+    void add_brick(int row, double left, double turn, auto at_end)
+    {
+        const auto first = static_cast<std::int32_t>(start.size() / 3);
+        for (int corner = 0; corner < corners; ++corner) {
+            const std::array<double, 3> point{left + (corner & 1), 0.75 * (corner >> 1 & 1), 0.5 * (row + (corner >> 2 & 1))};
+            put(start, point, turn);
+            put(end, at_end(row, point), turn);
+            for (const int other : {corner | 1, corner | 2, corner | 4})
+                if (other != corner) edges.insert(edges.end(), {first + corner, first + other});
+        }
+        for (const auto& [a, b, c, d] : {std::array{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}}) {
+            faces.insert(faces.end(), {first + a, first + b, first + c, first + a, first + c, first + d});
+            edges.insert(edges.end(), {first + a, first + c});
+        }
+    }
+
+    static void put(std::vector<double>& to, const std::array<double, 3>& point, double turn)
+    {
+        const double c = std::cos(turn), s = std::sin(turn), y = c * point[1] - s * point[2];
+        to.insert(to.end(), {c * point[0] - s * y, s * point[0] + c * y, s * point[1] + c * point[2]});
     }
 };
 
@@ -76,17 +123,17 @@ std::vector<Pair> neighbours(const Grid& grid, std::size_t first_begin, std::siz
 }
 
 template <class Pairs>
-void expect_no_search(const Grid& grid, const Pairs& pairs, double tolerance, double t_max, const std::string& what)
+void expect_no_search(const Scene& scene, const Pairs& pairs, double tolerance, double t_max, const std::string& what)
 {
     Options options;
     options.tolerance = tolerance;
     options.t_max = t_max;
     options.reference = true;
     std::vector<double> expected(pairs.size()), found(pairs.size());
-    const MovingMesh mesh = grid.mesh();
+    const MovingMesh mesh = scene.mesh();
     Summary searched, summary;
     ASSERT_TRUE(time_of_impact(mesh, pairs, options, expected, &searched).ok());
-    EXPECT_GT(searched.contacts, pairs.size() / 16) << what;
+    EXPECT_GT(searched.contacts, pairs.size() / 20) << what;
     options.reference = false;
     for (const Isa isa : isas_to_test()) {
         options.isa = isa;
@@ -121,6 +168,33 @@ TEST(Touching, MeshesOnOneGridAreDecidedByLanes)
                         expect_no_search(grid, vf, tolerance, t_max, "vertex-face " + what);
                         expect_no_search(grid, ee, tolerance, t_max, "edge-edge " + what);
                     }
+}
+
+/// Surfaces in contact from the start on, over faces and along edges; where they are turned, a contact or none by rounding.
+TEST(Touching, BricksOnOneAnotherAreDecidedByLanes)
+{
+    using Point = std::array<double, 3>;
+    const auto rest = [](int, const Point& point) { return point; };
+    const auto move = [](int, const Point& point) { return Point{point[0] + 0.1, point[1] + 0.03, point[2] + 0.01}; };
+    const auto slide = [](int row, const Point& point) { return Point{point[0] + 0.13 * (row % 3), point[1], point[2]}; };
+    const auto press = [](int row, const Point& point) { return Point{point[0], point[1], point[2] - 0.001 * row}; };
+    for (const double turn : {0.0, 0.3})
+        for (const auto& [how, wall] : {std::pair{"at rest", Wall{turn, rest}}, {"moved", Wall{turn, move}}, {"sliding", Wall{turn, slide}},
+                                        {"pressed", Wall{turn, press}}}) {
+            std::vector<VertexFace> vf;
+            std::vector<EdgeEdge> ee;
+            for (std::int32_t v = 0; 3 * v < std::ssize(wall.start); ++v)
+                for (std::int32_t f = 0; 3 * f < std::ssize(wall.faces); ++f)
+                    if (wall.next_to_each_other(v, wall.faces[static_cast<std::size_t>(3 * f)])) vf.push_back({v, f});
+            for (std::int32_t a = 0; 2 * a < std::ssize(wall.edges); ++a)
+                for (std::int32_t b = 0; b < a; ++b)
+                    if (wall.next_to_each_other(wall.edges[static_cast<std::size_t>(2 * a)], wall.edges[static_cast<std::size_t>(2 * b)])) ee.push_back({a, b});
+            const std::string what = std::string{how} + ", turn " + std::to_string(turn);
+            for (const double tolerance : {1e-6, 1e-9}) {
+                expect_no_search(wall, vf, tolerance, 1.0, "vertex-face " + what);
+                expect_no_search(wall, ee, tolerance, 1.0, "edge-edge " + what);
+            }
+        }
 }
 
 /// In one plane z = height, turned about an axis.
