@@ -242,7 +242,7 @@ mutant 'area: speed too small' $area 's/sqrt\(largest_square\(subtract/broadcast
 pipeline=simd/pipeline.hpp
 roots=simd/root_stages.hpp
 mutant 'lanes: uncertain pieces decided' $roots 's/bits\(pieces\.certain & less/bits(less/' certificates_test same_bits_test
-mutant 'lanes: pieces by sign alone' kernels/sign_change.hpp 's/less\(threshold, closest\)/less(zero, closest)/' certificates_test same_bits_test stress
+mutant 'lanes: pieces by sign alone' kernels/sign_change.hpp 's/less\(threshold, closest\)/less(broadcast<L>(0.0), closest)/' certificates_test same_bits_test stress
 mutant 'lanes: the other half looked at' simd/records.hpp 's/return \{select<L>\(first, half/return {select<L>(less(between, fraction), half/' same_bits_test
 mutant 'lanes: bracket not certain' $roots 's/beyond & opposite_signs\(at_low, at_high\)/beyond/' certificates_test same_bits_test
 mutant 'lanes: dismissed without a bracket' $roots 's/bracket\.certain & inclusion\.absent/inclusion.absent/' certificates_test same_bits_test

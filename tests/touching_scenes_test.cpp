@@ -66,7 +66,7 @@ struct Grid : Scene {
 
 /// A wall of bricks, each row on the joints of the one below, in any direction of space.
 struct Wall : Scene {
-    static constexpr int rows = 4, bricks_per_row = 4, corners = 8;
+    static constexpr int rows = 6, bricks_per_row = 6, corners = 8;
 
     /// Turned about two axes; all that `at_end` does is move the points of a row.
     Wall(double turn, auto at_end)
@@ -122,8 +122,9 @@ std::vector<Pair> neighbours(const Grid& grid, std::size_t first_begin, std::siz
     return pairs;
 }
 
+/// But for this share of the contacts.
 template <class Pairs>
-void expect_no_search(const Scene& scene, const Pairs& pairs, double tolerance, double t_max, const std::string& what)
+void expect_no_search(const Scene& scene, const Pairs& pairs, double share, double tolerance, double t_max, const std::string& what)
 {
     Options options;
     options.tolerance = tolerance;
@@ -140,7 +141,7 @@ void expect_no_search(const Scene& scene, const Pairs& pairs, double tolerance, 
         ASSERT_TRUE(time_of_impact(mesh, pairs, options, found, &summary).ok());
         EXPECT_EQ(0, std::memcmp(expected.data(), found.data(), found.size() * sizeof(double))) << what << ' ' << name(isa);
         EXPECT_EQ(searched.proven, summary.proven) << what << ' ' << name(isa);
-        EXPECT_LE(100 * summary.scalar_pairs, pairs.size()) << what << ' ' << name(isa) << ": of " << searched.contacts << " contacts";
+        EXPECT_LE(static_cast<double>(summary.scalar_pairs), share * static_cast<double>(searched.contacts)) << what << ' ' << name(isa) << ": of " << searched.contacts << " contacts";
     }
 }
 
@@ -165,12 +166,13 @@ TEST(Touching, MeshesOnOneGridAreDecidedByLanes)
                                                                [](std::size_t v) { return static_cast<int>(v); },
                                                                [&](std::size_t f) { return grid.faces[3 * f]; });
                         const auto ee = neighbours<EdgeEdge>(grid, 0, grid.edges.size() / 2, grid.edges.size() / 2, edge_start, edge_start);
-                        expect_no_search(grid, vf, tolerance, t_max, "vertex-face " + what);
-                        expect_no_search(grid, ee, tolerance, t_max, "edge-edge " + what);
+                        expect_no_search(grid, vf, 0.02, tolerance, t_max, "vertex-face " + what);
+                        expect_no_search(grid, ee, 0.02, tolerance, t_max, "edge-edge " + what);
                     }
 }
 
-/// Surfaces in contact from the start on, over faces and along edges; where they are turned, a contact or none by rounding.
+/// Surfaces in contact from the start on, over faces and along edges; where they are turned, a contact or none by rounding. Edges that are in
+/// line but for rounding are the search's then.
 TEST(Touching, BricksOnOneAnotherAreDecidedByLanes)
 {
     using Point = std::array<double, 3>;
@@ -191,8 +193,8 @@ TEST(Touching, BricksOnOneAnotherAreDecidedByLanes)
                     if (wall.next_to_each_other(wall.edges[static_cast<std::size_t>(2 * a)], wall.edges[static_cast<std::size_t>(2 * b)])) ee.push_back({a, b});
             const std::string what = std::string{how} + ", turn " + std::to_string(turn);
             for (const double tolerance : {1e-6, 1e-9}) {
-                expect_no_search(wall, vf, tolerance, 1.0, "vertex-face " + what);
-                expect_no_search(wall, ee, tolerance, 1.0, "edge-edge " + what);
+                expect_no_search(wall, vf, 0.015, tolerance, 1.0, "vertex-face " + what);
+                expect_no_search(wall, ee, turn == 0.0 ? 0.0 : 0.05, tolerance, 1.0, "edge-edge " + what);
             }
         }
 }
@@ -222,7 +224,7 @@ TEST(Touching, PairsInOnePlaneAreDecidedByLanes)
     for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
         for (const auto& [height, turn] : {Plane{0.0, 0.0}, {0.25, 0.0}, {0.25, 0.9}})
             for (const bool single : {false, true})
-                for (const double tolerance : {1e-6, 1e-9}) {
+                for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
                     if (single && turn != 0.0) continue;  // rounded to floats they are in no plane
                     const std::vector<oracle::Pair> pairs = pairs_in_one_plane(count, height, turn, single);
                     Options options;
