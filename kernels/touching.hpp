@@ -229,7 +229,7 @@ FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b, La
     };
     if (Lane<L>::bits(asked) != 0) look_at(touch_by_cubic(pair, a, b));
     if (Lane<L>::bits(asked) != 0) look_at(touch_by_gaps<kind>(pair, a, b, asked));
-    // The others are for pairs whose volume tells little or nothing.
+    // The others are for pairs whose volume tells nothing, or ceases to in this leaf: twice its bound is ample for what it slowly changes by there.
     const L volume = abs(coplanarity_on(pair, a, a).c0);
     const LaneMask<L> nearly_flat = asked & less_equal(volume, broadcast<L>(2.0) * pair.cubic_bound);
     asked = asked & less_equal(volume, pair.cubic_bound);
