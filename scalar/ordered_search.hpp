@@ -19,12 +19,10 @@ template <PairKind kind>
 class OrderedSearch {
 public:
     /// Without `lanes`, or with a kernel that has none for intervals, they are looked at one at a time.
-    OrderedSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& parameters, const IntervalKernel* lanes)
-        : pair{polynomials}
+    OrderedSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters, const IntervalKernel* lanes)
+        : pair{polynomials}, parameters{search_parameters}
     {
-        if (lanes == nullptr || lanes->apart == nullptr) return;
-        kernel = *lanes;
-        expected.emplace(pair.coefficients(), parameters);
+        if (lanes != nullptr) kernel = *lanes;
     }
 
     /// Takes intervals from the stack and counts them; drops those with a certificate and halves the others, until one of those
@@ -34,7 +32,7 @@ public:
     std::optional<Interval> next_without_certificate(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
     {
         while (!stack.empty()) {
-            if (expected && intervals + kernel.lanes <= limit) {
+            if (kernel.apart != nullptr && intervals + kernel.lanes <= limit) {
                 if (const auto found = look_at_several(stack, by_area, limit, narrowest)) return found;
                 continue;
             }
@@ -66,6 +64,7 @@ private:
     template <class Narrowest>
     std::optional<Interval> look_at_several(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
     {
+        if (!expected) expected.emplace(pair.coefficients(), parameters);
         const Interval next = stack.peek(0);
         const double target = expected->from(next.a);
         if (target == ExpectedContact::nowhere) return look_at_halves(stack, by_area, narrowest);
@@ -198,8 +197,10 @@ private:
     }
 
     const PairPolynomials<kind>& pair;
+    const SearchParameters& parameters;
     IntervalKernel kernel{};
-    std::optional<ExpectedContact> expected;  ///< If there are lanes.
+    /// Found when lanes are asked for the first time: for pairs that rest on one another, which are told by one look, it would take longer than all else.
+    std::optional<ExpectedContact> expected;
     double tried = -1.0;                       ///< Where a meeting was looked for last.
     double meeting = ExpectedContact::nowhere; ///< A time of which meeting.hpp says that no interval around it has a certificate.
 };
