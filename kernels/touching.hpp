@@ -3,8 +3,8 @@
 //
 // There nothing proves contact within a leaf, and no part of it, however narrow, does. But where the pair meets, as far as rounding can tell,
 // at some time of the leaf, no part that contains this time has one of the three certificates either (nor eq. 7, but for rounding): halved
-// down to the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, no other search would
-// clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with a lower bound as close to that time
+// down to the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, hardly any other search
+// would clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with a lower bound as close to that time
 // as a certificate on what is before it allows, or the leaf's start, if that is as close.
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
 /// A time of [a, b] to look at, and one not after it, until when the pair is apart on [a, b], or a; guesses both. Expected: what lies between
-/// them, during which rounding hides how far apart it is, is no more than half of [a, b].
+/// them, mostly what rounding hides, is less than half of [a, b].
 template <class L>
 struct LikelyTouch {
     L time, before;
@@ -67,9 +67,12 @@ FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PairCoefficientsOf<L>&
 }
 
 /// Where the last certificate is lost though nothing comes to zero, as between surfaces that glide along one another with less between them
-/// than rounding hides: shares of [a, b] before and after it at which it very probably holds, and does not.
+/// than rounding hides: shares of [a, b] before and after it at which it very probably holds, and does not. A choice, but in sum they are to
+/// be less than likely_touch expects.
 inline constexpr double held_before_loss = 0x1p-4, lost_after_loss = 0x1p-2;
-/// In narrower leaves, of which rounding may hide many in a row where thin shapes meet, asking takes longer than it spares.
+static_assert(held_before_loss + lost_after_loss < 0.5);
+/// In narrower leaves, of which rounding may hide many in a row where thin shapes meet, asking takes longer than it spares: measured at 1e-12,
+/// whose leaves have 2^-40 (bench/LIMITS.md), not at each width.
 inline constexpr double narrowest_lost = 0x1p-36;
 
 template <PairKind kind, class L>
@@ -111,8 +114,11 @@ FASTCCD_INLINE LaneMask<L> contact_proven_near(const PairCoefficientsOf<L>& pair
 inline constexpr double least_share = 0x1p-5;
 
 /// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some
-/// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp), is as large as any at any time of the step. A height
-/// is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that.
+/// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp; 31 u with t_max != 1), is as large as any at any time of the step. A
+/// height is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that. With area, little: it is 1/39 of
+/// the terms m of an edge function, or more. A volume that is all rounding, 13 u of three such m times an extent, is a height of 39 x 3 x 13 u, some
+/// 1,500 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 2^11 u s, and
+/// README says 2^12; hill climbing came to 1,354 u s (nothing_invented_test.cpp).
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
 {
@@ -229,7 +235,8 @@ FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b, La
     };
     if (Lane<L>::bits(asked) != 0) look_at(touch_by_cubic(pair, a, b));
     if (Lane<L>::bits(asked) != 0) look_at(touch_by_gaps<kind>(pair, a, b, asked));
-    // The others are for pairs whose volume tells nothing, or ceases to in this leaf: twice its bound is ample for what it slowly changes by there.
+    // The others are for pairs whose volume tells nothing at a or, losses, ceases to in this leaf: twice its bound is ample for what it slowly
+    // changes by there.
     const L volume = abs(coplanarity_on(pair, a, a).c0);
     const LaneMask<L> nearly_flat = asked & less_equal(volume, broadcast<L>(2.0) * pair.cubic_bound);
     asked = asked & less_equal(volume, pair.cubic_bound);

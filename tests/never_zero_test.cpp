@@ -1,7 +1,7 @@
 // Never zero by rounding: a pair that is apart at t = 0 by more than rounding hides gets toi > 0, whatever E_tol.
 //
 // More than rounding hides: the rounding part of the bound in nothing_invented_test.cpp, 2^2 sqrt(u) s for any
-// shape and 2^10 u s for ordinary ones. E_tol is no part of it: a contact within the first leaf, however wide, has a
+// shape and, for those of ordinary shape that are made here, 2^10 u s. E_tol is no part of it: a contact within the first leaf, however wide, has a
 // positive lower bound.
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 //
 // v the largest relative velocity of two end points, one of each primitive (per unit of t), and s the norm of the
 // extents: the largest |component| per axis of x_i - x_0, i = 1, 2, 3, at both ends of the step. Pairs of ordinary shape
-// (see well_shaped) are within E_tol v + 2^10 u s = E_tol v + 1.1e-13 s.
+// (has_area_at in kernels/touching.hpp) are within E_tol v + 2^12 u s = E_tol v + 4.5e-13 s, random ones (see well_shaped) within a quarter of that.
 //
 // Where it comes from. A leaf is reported because contact within it is proven: then the points that touch are at most E_tol v
 // apart at its left end. Or because a part of it, halved down to where time ends, has no certificate of absence. There only
@@ -259,6 +259,23 @@ TEST(NothingInvented, FoundByHillClimbing)
     measure_all(oracle::Kind::edge_edge, {pair}, 1e-9, worst);
     expect_close(oracle::Kind::edge_edge, "found by hill climbing", 1e-9, worst, thin_bound);
     EXPECT_GT(worst.beyond, 0.1 * thin_bound) << "no longer the worst: another is to be looked for";
+}
+
+/// The farthest with area that hill climbing has found: farther than random ones.
+TEST(NothingInvented, WithArea)
+{
+    const oracle::Pair pair{{{0x1.d047bd25aeecdp-15, 0x1.1fcf62d64772bp-9, -0x1.d0283d92da29bp-10},
+                             {0x1.f6e091ba9ebeep-14, 0x1.26faaf278fb62p-12, 0x1.e95e5fecf1ac7p-14},
+                             {0x1.fd42cc7746c8bp-14, 0x1.6d02aa4853ae8p-13, 0x1.d268c5b5a56e1p-13},
+                             {0x1.f3298b3ce15aep-14, 0x1.68027ac6fb706p-12, 0x1.d1f2955ec989p-15},
+                             {0x1.c953319031ffp-15, 0x1.226b3702abb58p-9, -0x1.d1a5cb992fe02p-10},
+                             {0x1.f3665ced91389p-14, 0x1.3bd94a78a1536p-12, 0x1.d1856d2dabf17p-14},
+                             {0x1.f9c893db8bf38p-14, 0x1.96bfec445232ap-13, 0x1.c67c53681d668p-13},
+                             {0x1.efaf57b6b6207p-14, 0x1.7ce11b330d543p-12, 0x1.a240af86b377p-15}}};
+    Worst worst;
+    measure_all(oracle::Kind::edge_edge, {pair}, 1e-9, worst);
+    expect_close(oracle::Kind::edge_edge, "with area", 1e-9, worst, 0x1p12 * u);
+    EXPECT_GT(worst.beyond, well_shaped_bound) << "no longer the worst: another is to be looked for";
 }
 
 /// Leaves without a certificate are searched on below E_tol: what is near within E_tol alone is not reported.

@@ -182,7 +182,7 @@ double farthest_touch(oracle::Kind exact_kind, const std::vector<oracle::Pair>& 
     return farthest;
 }
 
-/// Who touches is as close as pairs of ordinary shape are where they are reported (README): of pairs whose volumes and areas are lost
+/// Who touches is as close as random pairs of ordinary shape are where they are reported (nothing_invented_test.cpp): of pairs whose volumes and areas are lost
 /// in rounding nothing is concluded from them.
 TEST(Touching, IsNoFartherThanRoundingHides)
 {
