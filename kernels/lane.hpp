@@ -2,7 +2,7 @@
 //
 // Every kernel is one template on a lane type L: `double` (one pair) or `xsimd::batch<double, A>`
 // (several pairs side by side); the certificates also `xsimd::batch<float, A>`, twice as many. Only + - * / and square root, all correctly rounded by IEEE 754,
-// comparisons, operations on the sign bit, and the min / max below may decide a result: that is what makes
+// comparisons, operations on bits of the sign and the exponent, and the min / max below may decide a result: that is what makes
 // the results the same bits for every L. Nothing is contracted (the build switches that off): no product loses its rounding.
 //
 // All kernels live in a namespace of their own per instruction set: two translation units compiled
@@ -75,6 +75,10 @@ struct Lane<double> {
     static FASTCCD_INLINE double abs(double a) { return __builtin_fabs(a); }
     static FASTCCD_INLINE double negated(double a) { return -a; }
     static FASTCCD_INLINE double times_sign(double a, double b) { return __builtin_signbit(b) ? -a : a; }
+    static FASTCCD_INLINE double power_of_two(double a)
+    {
+        return __builtin_bit_cast(double, __builtin_bit_cast(std::uint64_t, a) & __builtin_bit_cast(std::uint64_t, __builtin_inf()));
+    }
     /// a - b, on whichever units have less to do elsewhere.
     static FASTCCD_INLINE double difference(double a, double b) { return a - b; }
     static FASTCCD_INLINE double sqrt(double a) { return __builtin_sqrt(a); }
@@ -170,6 +174,12 @@ template <class L>
 FASTCCD_INLINE L times_sign(L a, L b)
 {
     return Lane<L>::times_sign(a, b);
+}
+/// The largest power of two that is not above |a|, which is to be finite and normal; 0 for 0.
+template <class L>
+FASTCCD_INLINE L power_of_two(L a)
+{
+    return Lane<L>::power_of_two(a);
 }
 template <class L>
 FASTCCD_INLINE L sqrt(L a)

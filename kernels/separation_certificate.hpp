@@ -85,6 +85,12 @@ struct Reach {
     L low, high;
 };
 
+template <class L>
+FASTCCD_INLINE LaneMask<L> certified_at(const Reach<L>& reach, L time)
+{
+    return less(reach.low, time) & less(time, reach.high);
+}
+
 /// Value at both ends of the whole interval.
 template <class L>
 struct Ends {

@@ -112,7 +112,7 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParame
     const L time = select<L>(here, pair.at, pair.time);
     const L high = select<L>(here, sight.reach.high, pair.high);
     const L next = past_window(pair, high);
-    const LaneMask<L> certified = here & less(sight.reach.low, time) & less(time, high);
+    const LaneMask<L> certified = here & certified_at(sight.reach, pair.at);
     const LaneMask<L> farther = (certified & less_equal(one, next)) | (turned & less_equal(one, time)) |
                                 (here & less(broadcast<L>(limit), time));
     const LaneMask<L> at_start = here & !certified & less_equal(time, zero);

@@ -7,8 +7,10 @@
 #include <limits>
 
 #include <following_direction.hpp>
+#include <interval_certificates.hpp>
 #include <scaling.hpp>
 #include <separation_steps.hpp>
+#include <start_in_doubt.hpp>
 
 namespace fastccd::scalar {
 
@@ -96,31 +98,12 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     return result;
 }
 
-/// The motion with axes multiplied by the powers of two that bring their extents to [1/2, 1). Whether a pair is apart does not change, and
-/// answers do not depend on the units of an axis.
-RelativeMotion<double> with_equal_extents(const PairCoefficients& pair)
-{
-    RelativeMotion<double> r{};
-    for (int axis = 0; axis < 3; ++axis) {
-        double extent = 0.0;
-        for (int i = 0; i < 3; ++i) extent = std::max({extent, std::abs(pair.start[i][axis]), std::abs(pair.end[i][axis])});
-        int exponent = 0;
-        std::frexp(extent, &exponent);
-        const auto component = [&](Vector3<double>& v) -> double& { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; };
-        for (int i = 0; i < 3; ++i) {
-            component(r.start[i]) = std::ldexp(pair.start[i][axis], -exponent);
-            component(r.end[i]) = std::ldexp(pair.end[i][axis], -exponent);
-        }
-    }
-    return r;
-}
-
 template <PairKind kind>
 double search_on(const PairCoefficients& coefficients, SearchParameters parameters, double time)
 {
     parameters.separation = SeparationParameters{};
     SeparationRecord<double> pair{};
-    pair.r = with_equal_extents(coefficients);
+    pair.r = with_equal_extents(motion_of<double>(coefficients));
     pair.extents = extents(pair.r);
     pair.time = pair.at = pair.window_low = pair.window_high = time;
     return walk<kind>(pair, parameters, 1.0).toi;

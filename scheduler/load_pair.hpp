@@ -8,7 +8,7 @@
 
 namespace fastccd {
 
-/// The 24 coordinates of pair i, in the order of PairView.
-void load_pair(PairKind kind, const PairSource& source, std::size_t i, double* coordinates);
+/// The 24 coordinates of pair i, in the order of PairView, number c to coordinates[c * stride].
+void load_pair(PairKind kind, const PairSource& source, std::size_t i, double* coordinates, std::size_t stride = 1);
 
 }  // namespace fastccd

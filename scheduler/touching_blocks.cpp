@@ -11,17 +11,15 @@ namespace {
 /// Decided by one call, one pair a lane.
 class Block {
 public:
-    /// `other`: for pairs that are not answered in their leaves.
-    Block(const Job& j, std::size_t first_pair, TileScratch& s, TouchingBlock* k, Block* other)
-        : job{j}, first{first_pair}, scratch{s}, kernel{k}, elsewhere{other}
+    /// `for_doubts`: for pairs whose start is in doubt; `for_others`: for those that are not answered; if there is none, the search.
+    Block(const Job& j, std::size_t first_pair, TileScratch& s, TouchingBlock* k, Block* for_doubts, Block* for_others)
+        : job{j}, first{first_pair}, scratch{s}, kernel{k}, doubts{for_doubts}, others{for_others}
     {
     }
 
     void take(std::size_t i)
     {
-        double pair[pair_coordinates];
-        load_pair(job.kind, job.source, first + i, pair);
-        for (std::size_t c = 0; c < pair_coordinates; ++c) coordinates[c][size] = pair[c];
+        load_pair(job.kind, job.source, first + i, coordinates[0] + size, block_pairs);
         answers.left[size] = scratch.touch_time[i];
         numbers[size++] = i;
         if (size == block_pairs) decide();
@@ -46,8 +44,10 @@ public:
                 if (!has(answers.proven)) scratch.is_unproven[i / 64] |= bit;
             } else if (has(answers.apart)) {
                 continue;
-            } else if (elsewhere != nullptr) {
-                elsewhere->take(i);
+            } else if (has(answers.start_in_doubt)) {
+                doubts->take(i);
+            } else if (others != nullptr) {
+                others->take(i);
             } else {
                 scratch.is_undecided[i / 64] |= bit;
             }
@@ -60,7 +60,8 @@ private:
     std::size_t first;
     TileScratch& scratch;
     TouchingBlock* kernel;
-    Block* elsewhere;
+    Block* doubts;
+    Block* others;
     alignas(64) double coordinates[pair_coordinates][block_pairs];
     TouchAnswers answers;
     std::size_t numbers[block_pairs], size = 0;
@@ -78,15 +79,17 @@ void decide_touching(const Job& job, std::size_t first, std::size_t count, TileS
         return;
     }
     for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.may_touch[w] &= ~scratch.is_undecided[w];
-    Block anywhere{job, first, scratch, job.kernels->contact_anywhere, nullptr};
+    Block in_doubt{job, first, scratch, job.kernels->start_in_doubt, nullptr, nullptr};
+    Block anywhere{job, first, scratch, job.kernels->contact_anywhere, &in_doubt, nullptr};
     const bool both = job.parameters.leaf_width >= narrowest_looked_beyond;
-    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, both ? &anywhere : nullptr};
+    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, nullptr, both ? &anywhere : nullptr};
     for_each_bit(scratch.may_touch, count, [&](std::size_t i) {
         // A contact that is proven before it needs no other.
         if (!(scratch.time[i] < scratch.touch_time[i])) (scratch.touch_time[i] > 0.0 ? in_leaves : anywhere).take(i);
     });
     in_leaves.decide();
     anywhere.decide();
+    in_doubt.decide();
 }
 
 }  // namespace fastccd

@@ -378,6 +378,7 @@ struct BatchArithmetic {
     static FASTCCD_INLINE Batch abs(Batch a) { return xsimd::abs(a); }
     static FASTCCD_INLINE Batch negated(Batch a) { return a ^ broadcast(-0.0); }
     static FASTCCD_INLINE Batch times_sign(Batch a, Batch b) { return a ^ (b & broadcast(-0.0)); }
+    static FASTCCD_INLINE Batch power_of_two(Batch a) { return a & broadcast(__builtin_inf()); }
     static FASTCCD_INLINE Batch select(Mask m, Batch yes, Batch no) { return xsimd::select(m, yes, no); }
 
     static FASTCCD_INLINE Mask less(Batch a, Batch b) { return a < b; }

@@ -7,6 +7,7 @@
 
 #include <kernel_table.hpp>
 #include <search_coefficients.hpp>
+#include <start_in_doubt.hpp>
 #include <touching.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
@@ -30,7 +31,7 @@ FASTCCD_INLINE LaneMask<L> is_unscaled(const RelativeMotion<L>& step, const Rela
 /// In terms of lanes: see TouchAnswers. `both_apart`: in the leaf asked for, and in the next one.
 template <class L>
 struct LeafContacts {
-    LaneMask<L> reported, proven, both_apart, apart;
+    LaneMask<L> reported, proven, both_apart, apart, start_in_doubt;
     L time;
 };
 
@@ -41,7 +42,7 @@ __attribute__((noinline)) LeafContacts<L> answer_in_leaf(const PairCoefficientsO
     const L right = left + width;
     const LaneMask<L> proven = asked & contact_proven_on<kind>(pair, left, right), none = less(left, left);
     const Touch<L> touch = touch_on<kind>(pair, left, right, asked & !proven);
-    LeafContacts<L> found{proven | touch.present, proven, none, none, select<L>(proven, left, touch.lower_bound)};
+    LeafContacts<L> found{proven | touch.present, proven, none, none, none, select<L>(proven, left, touch.lower_bound)};
     if (Lane<L>::bits(touch.present) != 0) found.proven = proven | (touch.present & contact_proven_near<kind>(pair, touch.time));
     return found;
 }
@@ -113,7 +114,7 @@ FASTCCD_INLINE LeafContacts<L> answer_in_two_leaves(const PairCoefficientsOf<L>&
 {
     const L one = broadcast<L>(1.0), next = left + width;
     const LaneMask<L> none = less(left, left);
-    LeafContacts<L> found{none, none, none, none, left};
+    LeafContacts<L> found{none, none, none, none, none, left};
     asked = asked & less_equal(next, one);
     if (Lane<L>::bits(asked) == 0) return found;
     const LaneMask<L> apart = asked & apart_on<kind>(pair, left, min(next, one));
@@ -179,7 +180,7 @@ FASTCCD_INLINE LeafContacts<L> contact_anywhere(const SearchedPairs<L>& searched
     const PairCoefficientsOf<L>& pair = searched.pair;
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), width = broadcast<L>(parameters.leaf_width);
     const LaneMask<L> none = less(one, zero);
-    LeafContacts<L> found{none, none, none, searched.apart, zero};
+    LeafContacts<L> found{none, none, none, searched.apart, none, zero};
     const auto add = [&](const LeafContacts<L>& there) FASTCCD_INLINE_LAMBDA {
         found.reported = found.reported | there.reported;
         found.proven = found.proven | there.proven;
@@ -190,6 +191,7 @@ FASTCCD_INLINE LeafContacts<L> contact_anywhere(const SearchedPairs<L>& searched
     const LaneMask<L> at_start = open & in_contact_at_start<kind>(pair, width);
     if (Lane<L>::bits(at_start) != 0) {
         found.reported = at_start & well_shaped_at_start<kind>(pair);
+        found.start_in_doubt = at_start & !found.reported;
         open = open & !at_start;
     }
     if (Lane<L>::bits(open) == 0) return found;
@@ -216,10 +218,22 @@ FASTCCD_INLINE LeafContacts<L> contact_anywhere(const SearchedPairs<L>& searched
     return found;
 }
 
+/// Calls answer<kind>(number of the first pair) for each batch of a block.
+template <class L, class Answer>
+FASTCCD_INLINE void for_each_batch(PairKind kind, Answer answer)
+{
+    for (unsigned i = 0; i < block_pairs; i += Lane<L>::width) {
+        if (kind == PairKind::vertex_face)
+            answer.template operator()<PairKind::vertex_face>(i);
+        else
+            answer.template operator()<PairKind::edge_edge>(i);
+    }
+}
+
 template <class L, bool anywhere>
 void touching_block(PairKind kind, const double* block, const SearchParameters& parameters, TouchAnswers& answers)
 {
-    answers.reported = answers.proven = answers.apart = 0;
+    answers.reported = answers.proven = answers.apart = answers.start_in_doubt = 0;
     const auto answer = [&]<PairKind pair_kind>(unsigned first) FASTCCD_INLINE_LAMBDA {
         const SearchedPairs<L> searched = searched_pairs<pair_kind, L>(block, first, parameters);
         LeafContacts<L> found;
@@ -231,13 +245,20 @@ void touching_block(PairKind kind, const double* block, const SearchParameters& 
         answers.reported |= Lane<L>::bits(found.reported) << first;
         answers.proven |= Lane<L>::bits(found.proven) << first;
         answers.apart |= Lane<L>::bits(found.apart) << first;
+        answers.start_in_doubt |= Lane<L>::bits(found.start_in_doubt) << first;
     };
-    for (unsigned i = 0; i < block_pairs; i += Lane<L>::width) {
-        if (kind == PairKind::vertex_face)
-            answer.template operator()<PairKind::vertex_face>(i);
-        else
-            answer.template operator()<PairKind::edge_edge>(i);
-    }
+    for_each_batch<L>(kind, answer);
+}
+
+template <class L>
+void start_in_doubt_block(PairKind kind, const double* block, const SearchParameters& parameters, TouchAnswers& answers)
+{
+    answers.reported = answers.proven = answers.apart = answers.start_in_doubt = 0;
+    for_each_batch<L>(kind, [&]<PairKind pair_kind>(unsigned first) FASTCCD_INLINE_LAMBDA {
+        const RelativeMotion<L> r = relative_motion<L>(block + first, block_pairs, parameters.t_max);
+        Lane<L>::store(&answers.time[first], broadcast<L>(0.0));
+        answers.reported |= Lane<L>::bits(stays_in_contact_at_start<pair_kind>(r, parameters.bounds)) << first;
+    });
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -118,6 +118,10 @@ struct Lane<Array<T, n>> {
     {
         return each<Values>([&](unsigned i) { return -a.value[i]; });
     }
+    static Values power_of_two(Values a)
+    {
+        return each<Values>([&](unsigned i) { return static_cast<T>(One::power_of_two(a.value[i])); });
+    }
     static Values times_sign(Values a, Values b)
     {
         return each<Values>([&](unsigned i) { return std::signbit(b.value[i]) ? -a.value[i] : a.value[i]; });

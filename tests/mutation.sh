@@ -206,6 +206,9 @@ mutant 'touch: lanes, apart before not asked (certificates)' $in_leaves 's/less\
 mutant 'touch: lanes, certificates without margins' $in_leaves 's/const L factor = broadcast<L>\(times\)/const L factor = broadcast<L>(0.0 * times)/' touching_test
 mutant 'touch: lanes, certificates with gaps between them' $in_leaves 's/end - max\(end/end + max(end * broadcast<L>(1024.0)/' touching_test
 mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/at_start & well_shaped_at_start<kind>\(pair\)/at_start/' touching_test same_bits_test
+mutant 'touch: lanes, start in doubt, whatever is seen' kernels/start_in_doubt.hpp 's/return !certified_at\(sight\.reach, zero\)/return less_equal(zero, zero)/' touching_test
+mutant 'touch: lanes, start in doubt, of other units' kernels/start_in_doubt.hpp 's/look<kind>\(equal, extents\(equal\)/look<kind>(r, extents(r)/' touching_test
+mutant 'touch: lanes, start in doubt left to the search' $in_leaves 's/start_in_doubt = at_start & !found\.reported/start_in_doubt = none/' touching_test
 mutant 'touch: at the start in line by bounds' $touching 's/well_shaped_at<kind>\(pair, zero, zero\)/well_shaped_at<kind>(pair, zero, broadcast<L>(1.0))/' touching_test
 mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair\.well_shaped_at_start\(\)\) touch/touch/' never_zero_test nothing_invented_test touching_test
 mutant 'touch: lanes, on where only one leaf is apart' $in_leaves 's/open = open & there\.both_apart;/open = open \& !there.reported;/' touching_test
@@ -273,7 +276,7 @@ steps=kernels/separation_certificate.hpp
 mutant 'separation: axis at one end' $steps 's/less\(threshold, min\(s\.above, e\.above\)\)/less(threshold, max(s.above, e.above))/' separation_test separation_bits_test
 mutant 'separation: axis without d' $steps 's/\(broadcast<L>\(parameters\.threshold\) \+ broadcast/(broadcast<L>(0.0) + broadcast/' separation_test
 mutant 'separation: turning, middle not asked' $steps 's/ & less\(from \+ to, c\.middle_n \+ c\.middle_m\)//' error_bounds_test separation_test
-mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & less\(sight\.reach\.low, time\) & less\(time, high\)/here/' separation_test separation_bits_test
+mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & certified_at\(sight\.reach, pair\.at\)/here/' separation_test separation_bits_test
 
 # ---- Totals
 tile=scheduler/tile_runner.cpp

@@ -172,8 +172,8 @@ TEST(Touching, MeshesOnOneGridAreDecidedByLanes)
                     }
 }
 
-/// Surfaces in contact from the start on, over faces and along edges; where they are turned, a contact or none by rounding. Edges that are in
-/// line but for rounding are the search's then.
+/// Surfaces in contact from the start on, over faces and along edges; where they are turned, a contact or none by rounding, and
+/// edges in line but for rounding.
 TEST(Touching, BricksOnOneAnotherAreDecidedByLanes)
 {
     using Point = std::array<double, 3>;
@@ -195,7 +195,7 @@ TEST(Touching, BricksOnOneAnotherAreDecidedByLanes)
             const std::string what = std::string{how} + ", turn " + std::to_string(turn);
             for (const double tolerance : {1e-6, 1e-9}) {
                 expect_no_search(wall, vf, 0.015, tolerance, 1.0, "vertex-face " + what);
-                expect_no_search(wall, ee, turn == 0.0 ? 0.0 : 0.05, tolerance, 1.0, "edge-edge " + what);
+                expect_no_search(wall, ee, turn == 0.0 ? 0.0 : 0.005, tolerance, 1.0, "edge-edge " + what);
             }
         }
 }

@@ -234,10 +234,10 @@ TEST(Touching, ShapeDoesNotDependOnTheOrderOfEdges)
 }
 
 struct Compared {
-    std::size_t asked = 0, reported = 0, in_next = 0, proven = 0, anywhere = 0, at_start = 0, apart = 0;
+    std::size_t asked = 0, reported = 0, in_next = 0, proven = 0, anywhere = 0, at_start = 0, apart = 0, in_doubt = 0, stay = 0;
 };
 
-/// Asks lanes for the leaf that the search answers with, for the one before it, and for any.
+/// Asks lanes for the leaf that the search answers with, for the one before it, and for any; then for the start, where that is in doubt.
 template <PairKind kind>
 void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters,
                    const std::string& what, Compared& seen)
@@ -247,8 +247,7 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
         double left;  // 0: anywhere
         scalar::SearchResult expected;
     };
-    const auto compare = [&](std::vector<Question>& asked) {
-        if (asked.empty()) return;
+    const auto answer = [&](const std::vector<Question>& asked, TouchingBlock* kernel) {
         TouchAnswers answers;
         alignas(64) double block[pair_coordinates][block_pairs];
         for (std::size_t lane = 0; lane < block_pairs; ++lane) {
@@ -256,8 +255,30 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
             for (std::size_t c = 0; c < pair_coordinates; ++c) block[c][lane] = (*question.pair)[c / 3][c % 3];
             answers.left[lane] = question.left;
         }
-        const bool anywhere = asked.front().left == 0.0;
-        (anywhere ? kernels.contact_anywhere : kernels.contact_in_leaves)(kind, block[0], parameters, answers);
+        kernel(kind, block[0], parameters, answers);
+        return answers;
+    };
+    std::vector<Question> in_leaves, anywhere, in_doubt;
+    const auto compare_starts = [&](std::vector<Question>& asked) {
+        if (asked.empty()) return;
+        const TouchAnswers answers = answer(asked, kernels.start_in_doubt);
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            const auto& [pair, left, expected] = asked[i];
+            const bool stays = (answers.reported >> i & 1) != 0;
+            ASSERT_EQ(stays, expected.toi == 0.0) << what << ": " << lossless(*pair);
+            ++seen.in_doubt;
+            if (!stays) continue;
+            ++seen.stay;
+            ASSERT_EQ(answers.time[i], 0.0);
+            ASSERT_EQ(expected.proof, scalar::Proof::none) << what << ": " << lossless(*pair);
+        }
+        ASSERT_EQ(answers.proven | answers.apart | answers.start_in_doubt, 0u);
+        asked.clear();
+    };
+    const auto compare = [&](std::vector<Question>& asked) {
+        if (asked.empty()) return;
+        const bool is_anywhere = asked.front().left == 0.0;
+        const TouchAnswers answers = answer(asked, is_anywhere ? kernels.contact_anywhere : kernels.contact_in_leaves);
         for (std::size_t i = 0; i < asked.size(); ++i) {
             const auto& [pair, left, expected] = asked[i];
             ++seen.asked;
@@ -266,12 +287,17 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
                 ASSERT_EQ(expected.toi, std::numeric_limits<double>::infinity()) << what << ": " << lossless(*pair);
                 ASSERT_EQ(answers.reported >> i & 1, 0u) << what << ": " << lossless(*pair);
             }
+            if ((answers.start_in_doubt >> i & 1) != 0) {
+                ASSERT_EQ((answers.reported | answers.apart) >> i & 1, 0u) << what << ": " << lossless(*pair);
+                in_doubt.push_back(asked[i]);
+                if (in_doubt.size() == block_pairs) compare_starts(in_doubt);
+            }
             if ((answers.reported >> i & 1) == 0) continue;
             const bool proven = (answers.proven >> i & 1) != 0;
             ASSERT_EQ(parameters.time(answers.time[i]), expected.toi) << what << ": " << lossless(*pair);
             ASSERT_EQ(proven, expected.proof != scalar::Proof::none) << what << ": " << lossless(*pair);
             ++seen.reported;
-            if (anywhere)
+            if (is_anywhere)
                 ++(answers.time[i] > 0.0 ? seen.anywhere : seen.at_start);
             else
                 seen.in_next += answers.time[i] >= left + parameters.leaf_width;
@@ -279,7 +305,6 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
         }
         asked.clear();
     };
-    std::vector<Question> in_leaves, anywhere;
     const auto ask = [&](std::vector<Question>& asked, const Question& question) {
         asked.push_back(question);
         if (asked.size() == block_pairs) compare(asked);
@@ -299,6 +324,7 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
     }
     compare(in_leaves);
     compare(anywhere);
+    compare_starts(in_doubt);
 }
 
 TEST(Touching, LanesReportWhatTheSearchDoes)
@@ -317,14 +343,18 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
                     });
                     if (HasFatalFailure()) return;
                 }
-            std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu in any, %zu at the start, %zu proven; %zu apart\n",
-                        name(isa), kind_name(kind), seen.reported, seen.asked, seen.in_next, seen.anywhere, seen.at_start, seen.proven, seen.apart);
+            std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu in any, %zu at the start, %zu proven; %zu apart; "
+                        "the start of %zu in doubt, %zu stay there\n",
+                        name(isa), kind_name(kind), seen.reported, seen.asked, seen.in_next, seen.anywhere, seen.at_start, seen.proven, seen.apart,
+                        seen.in_doubt, seen.stay);
             EXPECT_GT(seen.reported, amount(10000));
             EXPECT_GT(seen.in_next, amount(1000));
             EXPECT_GT(seen.proven, amount(1000));
             EXPECT_GT(seen.anywhere, amount(1000));
             EXPECT_GT(seen.at_start, amount(1000));
             EXPECT_GT(seen.apart, amount(1000));
+            EXPECT_GT(seen.in_doubt, seen.stay);
+            EXPECT_GT(seen.stay, amount(100));
         }
 }
 
