@@ -327,6 +327,36 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
     compare_starts(in_doubt);
 }
 
+/// Four points in line at time 0, but for rounding; of every other pair a vertex some roundings before the first corner of its face along the
+/// line, or a short edge as far beside another one: what directions tell, and certificates do not.
+std::vector<oracle::Pair> in_line_at_start(oracle::Kind kind, std::size_t count)
+{
+    std::vector<oracle::Pair> pairs(count);
+    std::mt19937_64 bits{818};
+    const auto random = [&] { return std::ldexp(static_cast<double>(bits() >> 11), -53); };
+    for (std::size_t i = 0; i < count; ++i) {
+        const double from[] = {random(), random(), random()}, along[] = {random(), random(), random()};
+        const double off = i % 2 == 0 ? std::ldexp(random(), -50 + static_cast<int>(bits() % 4)) : 0.0;
+        double at[] = {-random(), random(), -random(), random()}, beside = 0.0;
+        if (kind == oracle::Kind::edge_edge)
+            for (double& s : at) s *= 0x1p-5;
+        if (off > 0.0 && kind == oracle::Kind::vertex_face) {
+            at[0] = 0.0;
+            at[1] = off;
+            at[2] = -at[2];
+        } else {
+            beside = off;
+        }
+        for (std::size_t point = 0; point < 4; ++point)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                pairs[i][point][axis] = from[axis] + at[point] * along[axis];
+                if (point > 1) pairs[i][point][axis] += beside * (along[(axis + 1) % 3] - along[(axis + 2) % 3]);
+                pairs[i][point + 4][axis] = random();
+            }
+    }
+    return pairs;
+}
+
 TEST(Touching, LanesReportWhatTheSearchDoes)
 {
     for (const Isa isa : isas_to_test())
@@ -335,12 +365,14 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
             for (const double tolerance : {1.5, 0.5, 1e-4, 1e-9, 1e-12, 0x1p-44})
                 for (const double t_max : {1.0, 0.7}) {
                     const SearchParameters parameters{tolerance, t_max, false};
-                    for_each_family(kind, 814, amount(160), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
+                    const auto compare = [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
                         if (kind == oracle::Kind::vertex_face)
                             compare_lanes<PairKind::vertex_face>(*kernel_table(isa), pairs, parameters, family, seen);
                         else
                             compare_lanes<PairKind::edge_edge>(*kernel_table(isa), pairs, parameters, family, seen);
-                    });
+                    };
+                    for_each_family(kind, 814, amount(160), compare);
+                    compare(in_line_at_start(kind, 600), "in line at the start");
                     if (HasFatalFailure()) return;
                 }
             std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu in any, %zu at the start, %zu proven; %zu apart; "
@@ -353,8 +385,8 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
             EXPECT_GT(seen.anywhere, amount(1000));
             EXPECT_GT(seen.at_start, amount(1000));
             EXPECT_GT(seen.apart, amount(1000));
-            EXPECT_GT(seen.in_doubt, seen.stay);
-            EXPECT_GT(seen.stay, amount(100));
+            EXPECT_GT(seen.in_doubt, seen.stay + 10);
+            EXPECT_GT(seen.stay, 100u);
         }
 }
 
