@@ -157,7 +157,7 @@ struct KernelTable {
     void (*run_tile)(const TileRequest&, TileScratch&);
     TouchingBlock* contact_in_leaves;  ///< Of pairs that may be in contact in the leaf asked for or, if that is apart, in the next one,
     TouchingBlock* contact_anywhere;   ///< of pairs that may be in any, and
-    TouchingBlock* start_in_doubt;     ///< of those of which that leaves the start in doubt. Who is not reported may be in contact anywhere.
+    TouchingBlock* start_in_doubt;     ///< of those whose start that leaves in doubt: who is not reported here may still be in contact anywhere.
     /// For the certified search of one pair; null if intervals are better looked at one by one.
     IntervalKernel intervals;
 };

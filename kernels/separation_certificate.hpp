@@ -85,6 +85,7 @@ struct Reach {
     L low, high;
 };
 
+/// Whether it is certified at `time`.
 template <class L>
 FASTCCD_INLINE LaneMask<L> certified_at(const Reach<L>& reach, L time)
 {

@@ -11,7 +11,8 @@ namespace {
 /// Decided by one call, one pair a lane.
 class Block {
 public:
-    /// `for_doubts`: for pairs whose start is in doubt; `for_others`: for those that are not answered; if there is none, the search.
+    /// `for_doubts`: for pairs whose start is in doubt, if the kernel says so of any; `for_others`: for those that are not answered; if there is
+    /// none, they are for the search.
     Block(const Job& j, std::size_t first_pair, TileScratch& s, TouchingBlock* k, Block* for_doubts, Block* for_others)
         : job{j}, first{first_pair}, scratch{s}, kernel{k}, doubts{for_doubts}, others{for_others}
     {

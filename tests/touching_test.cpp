@@ -1,5 +1,5 @@
 // Contact at a side, at an end, or next to the end of a leaf, which is reported without halving the leaf (kernels/touching.hpp): the verdict
-// that halving would give, times that are not late, and the same from lanes as from the search.
+// that halving would give, times that are not late (from lanes the same: touching_lanes_test.cpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include <random>
 
 #include <certified_search.hpp>
-#include <kernel_table.hpp>
 #include <leaf_search.hpp>
 #include <touching_pairs.hpp>
 
@@ -19,35 +18,10 @@
 #include "oracle/exact_ccd.hpp"
 #include "oracle/exact_distance.hpp"
 #include "thin_pairs.hpp"
+#include "touching_pairs_made.hpp"
 
 namespace fastccd::testing {
 namespace {
-
-constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
-
-/// All families of hard pairs, and thin ones: look(pairs, name).
-template <class Look>
-void for_each_family(oracle::Kind kind, std::uint64_t seed, std::size_t count, Look look)
-{
-    std::vector<oracle::Pair> pairs;
-    for (const std::string& family : families()) {
-        generate(family, kind, seed, count, pairs);
-        look(pairs, family);
-    }
-    pairs = ThinPairs{kind, seed}.next(count);
-    look(pairs, "thin");
-}
-
-/// The leaves that hold s and lie on either side of it.
-std::vector<scalar::Interval> leaves_around(double s, const SearchParameters& parameters)
-{
-    std::vector<scalar::Interval> leaves;
-    for (int k = -1; k <= 1; ++k) {
-        const double left = (std::floor(s * parameters.leaf_count) + k) * parameters.leaf_width;
-        if (left > 0.0 && left + parameters.leaf_width <= 1.0) leaves.push_back({left, left + parameters.leaf_width});
-    }
-    return leaves;
-}
 
 /// Whether halving the leaf down to the spacing of doubles leaves a part without any certificate, eq. 7 included.
 template <PairKind kind>
@@ -233,163 +207,6 @@ TEST(Touching, ShapeDoesNotDependOnTheOrderOfEdges)
     EXPECT_GT(without, amount(1000));
 }
 
-struct Compared {
-    std::size_t asked = 0, reported = 0, in_next = 0, proven = 0, anywhere = 0, at_start = 0, apart = 0, in_doubt = 0, stay = 0;
-};
-
-/// Asks lanes for the leaf that the search answers with, for the one before it, and for any; then for the start, where that is in doubt.
-template <PairKind kind>
-void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters,
-                   const std::string& what, Compared& seen)
-{
-    struct Question {
-        const oracle::Pair* pair;
-        double left;  // 0: anywhere
-        scalar::SearchResult expected;
-    };
-    const auto answer = [&](const std::vector<Question>& asked, TouchingBlock* kernel) {
-        TouchAnswers answers;
-        alignas(64) double block[pair_coordinates][block_pairs];
-        for (std::size_t lane = 0; lane < block_pairs; ++lane) {
-            const Question& question = asked[std::min(lane, asked.size() - 1)];
-            for (std::size_t c = 0; c < pair_coordinates; ++c) block[c][lane] = (*question.pair)[c / 3][c % 3];
-            answers.left[lane] = question.left;
-        }
-        kernel(kind, block[0], parameters, answers);
-        return answers;
-    };
-    std::vector<Question> in_leaves, anywhere, in_doubt;
-    const auto compare_starts = [&](std::vector<Question>& asked) {
-        if (asked.empty()) return;
-        const TouchAnswers answers = answer(asked, kernels.start_in_doubt);
-        for (std::size_t i = 0; i < asked.size(); ++i) {
-            const auto& [pair, left, expected] = asked[i];
-            const bool stays = (answers.reported >> i & 1) != 0;
-            ASSERT_EQ(stays, expected.toi == 0.0) << what << ": " << lossless(*pair);
-            ++seen.in_doubt;
-            if (!stays) continue;
-            ++seen.stay;
-            ASSERT_EQ(answers.time[i], 0.0);
-            ASSERT_EQ(expected.proof, scalar::Proof::none) << what << ": " << lossless(*pair);
-        }
-        ASSERT_EQ(answers.proven | answers.apart | answers.start_in_doubt, 0u);
-        asked.clear();
-    };
-    const auto compare = [&](std::vector<Question>& asked) {
-        if (asked.empty()) return;
-        const bool is_anywhere = asked.front().left == 0.0;
-        const TouchAnswers answers = answer(asked, is_anywhere ? kernels.contact_anywhere : kernels.contact_in_leaves);
-        for (std::size_t i = 0; i < asked.size(); ++i) {
-            const auto& [pair, left, expected] = asked[i];
-            ++seen.asked;
-            if ((answers.apart >> i & 1) != 0) {
-                ++seen.apart;
-                ASSERT_EQ(expected.toi, std::numeric_limits<double>::infinity()) << what << ": " << lossless(*pair);
-                ASSERT_EQ(answers.reported >> i & 1, 0u) << what << ": " << lossless(*pair);
-            }
-            if ((answers.start_in_doubt >> i & 1) != 0) {
-                ASSERT_EQ((answers.reported | answers.apart) >> i & 1, 0u) << what << ": " << lossless(*pair);
-                in_doubt.push_back(asked[i]);
-                if (in_doubt.size() == block_pairs) compare_starts(in_doubt);
-            }
-            if ((answers.reported >> i & 1) == 0) continue;
-            const bool proven = (answers.proven >> i & 1) != 0;
-            ASSERT_EQ(parameters.time(answers.time[i]), expected.toi) << what << ": " << lossless(*pair);
-            ASSERT_EQ(proven, expected.proof != scalar::Proof::none) << what << ": " << lossless(*pair);
-            ++seen.reported;
-            if (is_anywhere)
-                ++(answers.time[i] > 0.0 ? seen.anywhere : seen.at_start);
-            else
-                seen.in_next += answers.time[i] >= left + parameters.leaf_width;
-            seen.proven += proven;
-        }
-        asked.clear();
-    };
-    const auto ask = [&](std::vector<Question>& asked, const Question& question) {
-        asked.push_back(question);
-        if (asked.size() == block_pairs) compare(asked);
-    };
-    for (const oracle::Pair& pair : pairs) {
-        const scalar::SearchResult found = scalar::certified_search(kind, pair[0].data(), parameters);
-        ask(anywhere, {&pair, 0.0, found});
-        // Lanes ask only where the search comes to.
-        const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
-        const double last = polynomials.apart() ? scalar::LeafSearch<kind>::none : scalar::LeafSearch<kind>{polynomials, parameters}.first_contact();
-        // Of a pair that is apart, where contact would be.
-        const double near = last <= 1.0 ? last : scalar::ExpectedContact{polynomials.coefficients(), parameters}.from(0.0);
-        if (std::isfinite(near))
-            for (const scalar::Interval leaf : leaves_around(near, parameters))
-                if (leaf.a <= last) ask(in_leaves, {&pair, leaf.a, found});
-        if (::testing::Test::HasFatalFailure()) return;
-    }
-    compare(in_leaves);
-    compare(anywhere);
-    compare_starts(in_doubt);
-}
-
-/// Four points in line at time 0, but for rounding; of every other pair a vertex some roundings before the first corner of its face along the
-/// line, or a short edge as far beside another one: what directions tell, and certificates do not.
-std::vector<oracle::Pair> in_line_at_start(oracle::Kind kind, std::size_t count)
-{
-    std::vector<oracle::Pair> pairs(count);
-    std::mt19937_64 bits{818};
-    const auto random = [&] { return std::ldexp(static_cast<double>(bits() >> 11), -53); };
-    for (std::size_t i = 0; i < count; ++i) {
-        const double from[] = {random(), random(), random()}, along[] = {random(), random(), random()};
-        const double off = i % 2 == 0 ? std::ldexp(random(), -50 + static_cast<int>(bits() % 4)) : 0.0;
-        double at[] = {-random(), random(), -random(), random()}, beside = 0.0;
-        if (kind == oracle::Kind::edge_edge)
-            for (double& s : at) s *= 0x1p-5;
-        if (off > 0.0 && kind == oracle::Kind::vertex_face) {
-            at[0] = 0.0;
-            at[1] = off;
-            at[2] = -at[2];
-        } else {
-            beside = off;
-        }
-        for (std::size_t point = 0; point < 4; ++point)
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                pairs[i][point][axis] = from[axis] + at[point] * along[axis];
-                if (point > 1) pairs[i][point][axis] += beside * (along[(axis + 1) % 3] - along[(axis + 2) % 3]);
-                pairs[i][point + 4][axis] = random();
-            }
-    }
-    return pairs;
-}
-
-TEST(Touching, LanesReportWhatTheSearchDoes)
-{
-    for (const Isa isa : isas_to_test())
-        for (const auto kind : kinds) {
-            Compared seen;
-            for (const double tolerance : {1.5, 0.5, 1e-4, 1e-9, 1e-12, 0x1p-44})
-                for (const double t_max : {1.0, 0.7}) {
-                    const SearchParameters parameters{tolerance, t_max, false};
-                    const auto compare = [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
-                        if (kind == oracle::Kind::vertex_face)
-                            compare_lanes<PairKind::vertex_face>(*kernel_table(isa), pairs, parameters, family, seen);
-                        else
-                            compare_lanes<PairKind::edge_edge>(*kernel_table(isa), pairs, parameters, family, seen);
-                    };
-                    for_each_family(kind, 814, amount(160), compare);
-                    compare(in_line_at_start(kind, 600), "in line at the start");
-                    if (HasFatalFailure()) return;
-                }
-            std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu in any, %zu at the start, %zu proven; %zu apart; "
-                        "the start of %zu in doubt, %zu stay there\n",
-                        name(isa), kind_name(kind), seen.reported, seen.asked, seen.in_next, seen.anywhere, seen.at_start, seen.proven, seen.apart,
-                        seen.in_doubt, seen.stay);
-            EXPECT_GT(seen.reported, amount(10000));
-            EXPECT_GT(seen.in_next, amount(1000));
-            EXPECT_GT(seen.proven, amount(1000));
-            EXPECT_GT(seen.anywhere, amount(1000));
-            EXPECT_GT(seen.at_start, amount(1000));
-            EXPECT_GT(seen.apart, amount(1000));
-            EXPECT_GT(seen.in_doubt, seen.stay + 10);
-            EXPECT_GT(seen.stay, 100u);
-        }
-}
-
 struct ApartBefore {
     std::size_t by_one = 0, by_several = 0, throughout = 0;  ///< Pairs, by certificates.
     std::size_t in_parts = 0;                                ///< Leaves that have no certificate, their parts have.
@@ -483,26 +300,6 @@ TEST(Touching, CertificatesWithMarginsHoldOnParts)
             });
         }
         EXPECT_GT(seen, amount(100000));
-    }
-}
-
-/// Two edges in line and apart by 16 u of their size at the start, never closer than that: distances along directions tell.
-TEST(Touching, InLineAtTheStartIsToldFromContact)
-{
-    const oracle::Pair pair{{{0, 0, 0},
-                             {-0x1.349ecca62e673p-5, 0x1.216b002a5174ep-7, -0x1.32f84ce2a74dp-7},
-                             {0x1.7f99855e492d1p-7, -0x1.67bb6d7bf6a44p-9, 0x1.7d8c6029bd61fp-9},
-                             {-0x1.d29a085b451b4p-6, 0x1.b591dbacb8686p-8, -0x1.d01b4215d11c8p-8},
-                             {0x1.c63c9cea41fp-3, -0x1.1a2412181dc38p-2, -0x1.48c2dd80d5e52p-1},
-                             {0x1.a02d8bdb86db4p-2, -0x1.869046c40ad12p-1, -0x1.06278b127b94p-3},
-                             {-0x1.1833d39a8b8ep-2, -0x1.14578233ee02ap-1, 0x1.887105c50eecp-4},
-                             {0x1.9185d0bf2329cp-2, -0x1.0ac5fa73b22acp-2, -0x1.0854f638af0bp-1}}};
-    ASSERT_FALSE(oracle::exact_ccd(oracle::Kind::edge_edge, pair).contact);
-    for (const Isa isa : isas_to_test()) {
-        Options options;
-        options.tolerance = 0.1;
-        options.isa = isa;
-        EXPECT_EQ(answer_without_roots(oracle::Kind::edge_edge, interleaved({pair}), options).toi[0], std::numeric_limits<double>::infinity()) << name(isa);
     }
 }
 
