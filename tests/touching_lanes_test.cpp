@@ -175,6 +175,7 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
             EXPECT_GT(seen.stay, 100u);
         }
 }
+
 /// Two edges in line and apart by 16 u of their size at the start, never closer than that: distances along directions tell.
 TEST(Touching, InLineAtTheStartIsToldFromContact)
 {
