@@ -10,6 +10,12 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
+/// Bernstein coefficients of a linear function.
+template <class L>
+struct Linear {
+    L c0, c1;
+};
+
 /// Bernstein coefficients of a quadratic.
 template <class L>
 struct Quadratic {
@@ -47,6 +53,12 @@ FASTCCD_INLINE Quadratic<L> on_interval(const Quadratic<L>& q, L a, L b)
     const L a0 = lerp(q.c0, q.c1, a), a1 = lerp(q.c1, q.c2, a);
     const L b0 = lerp(q.c0, q.c1, b), b1 = lerp(q.c1, q.c2, b);
     return {lerp(a0, a1, a), lerp(a0, a1, b), lerp(b0, b1, b)};
+}
+
+template <class L>
+FASTCCD_INLINE Linear<L> on_interval(const Linear<L>& f, L a, L b)
+{
+    return {lerp(f.c0, f.c1, a), lerp(f.c0, f.c1, b)};
 }
 
 template <class L>

@@ -32,77 +32,119 @@ FASTCCD_INLINE RelativeMotion<L> motion_of(const PairCoefficientsOf<T>& pair)
             {vector(pair.end[0]), vector(pair.end[1]), vector(pair.end[2])}};
 }
 
-/// Bernstein coefficients of the coplanarity cubic on [a, b], each within cubic_bound.
+/// s of [0, 1] over the interval of the pair's coefficients as a time of the step, rounded to one.
 template <class T, class L>
-FASTCCD_INLINE Cubic<L> coplanarity_on(const PairCoefficientsOf<T>& pair, L a, L b)
+FASTCCD_INLINE L time_in_step(const PolynomialsOf<T>& pair, L s)
 {
-    const auto& c = pair.cubic;
-    return on_interval(Cubic<L>{in_lanes<L>(c[0]), in_lanes<L>(c[1]), in_lanes<L>(c[2]), in_lanes<L>(c[3])}, a, b);
+    return in_lanes<L>(pair.origin) + in_lanes<L>(pair.duration) * s;
 }
 
-/// Where a function has one strict sign, beyond its bound, throughout an interval.
+/// A part [a, b] of the interval of the pair's coefficients; or all of it.
+template <class L>
+struct Between {
+    L a, b;
+};
+template <class L>
+struct Throughout {
+};
+
+template <class Polynomial, class L>
+FASTCCD_INLINE Polynomial on_part(const Polynomial& f, const Between<L>& part)
+{
+    return on_interval(f, part.a, part.b);
+}
+template <class Polynomial, class L>
+FASTCCD_INLINE Polynomial on_part(const Polynomial& f, const Throughout<L>&)
+{
+    return f;
+}
+
+/// Bernstein coefficients of the coplanarity cubic on a part, each within cubic_bound.
+template <class T, template <class> class Part, class L>
+FASTCCD_INLINE Cubic<L> coplanarity_on(const PolynomialsOf<T>& pair, const Part<L>& part)
+{
+    const auto& c = pair.cubic;
+    return on_part(Cubic<L>{in_lanes<L>(c[0]), in_lanes<L>(c[1]), in_lanes<L>(c[2]), in_lanes<L>(c[3])}, part);
+}
+template <class T, class L>
+FASTCCD_INLINE Cubic<L> coplanarity_on(const PolynomialsOf<T>& pair, L a, L b)
+{
+    return coplanarity_on(pair, Between<L>{a, b});
+}
+
+/// Where a function has one strict sign, beyond its bound, throughout a part.
 template <class L>
 struct StrictSign {
     LaneMask<L> positive, negative;
 };
 
-template <class EdgeFunction, class L>
-FASTCCD_INLINE StrictSign<L> strict_sign(const EdgeFunction& e, L a, L b)
+template <class EdgeFunction, template <class> class Part, class L>
+FASTCCD_INLINE StrictSign<L> strict_sign(const EdgeFunction& e, const Part<L>& part)
 {
-    const Quadratic<L> q = on_interval(Quadratic<L>{in_lanes<L>(e.start), in_lanes<L>(e.middle), in_lanes<L>(e.end)}, a, b);
+    const Quadratic<L> q = on_part(Quadratic<L>{in_lanes<L>(e.start), in_lanes<L>(e.middle), in_lanes<L>(e.end)}, part);
     const L bound = in_lanes<L>(e.bound);
     return {less(bound, smallest(q)), less(largest(q), negated(bound))};
 }
 
-/// The cubic certificate on [a, b].
-template <class T, class L>
-FASTCCD_INLINE LaneMask<L> never_coplanar(const PairCoefficientsOf<T>& pair, L a, L b)
+/// The cubic certificate.
+template <class T, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> never_coplanar(const PolynomialsOf<T>& pair, const Part<L>& part)
 {
-    const Cubic<L> f = coplanarity_on(pair, a, b);
+    const Cubic<L> f = coplanarity_on(pair, part);
     const L bound = in_lanes<L>(pair.cubic_bound);
     return less(bound, smallest(f)) | less(largest(f), negated(bound));
 }
 
-/// The quadratic certificate on [a, b] in the projection along one axis: strict signs decide as in apart_in_projection.
-template <PairKind kind, class EdgeFunction, class L>
-FASTCCD_INLINE LaneMask<L> apart_along(const EdgeFunction* edges, L a, L b)
+/// The quadratic certificate in the projection along one axis: strict signs decide as in apart_in_projection.
+template <PairKind kind, class EdgeFunction, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> apart_along(const EdgeFunction* edges, const Part<L>& part)
 {
-    const StrictSign<L> p = strict_sign(edges[0], a, b), q = strict_sign(edges[1], a, b), t = strict_sign(edges[2], a, b);
+    const StrictSign<L> p = strict_sign(edges[0], part), q = strict_sign(edges[1], part), t = strict_sign(edges[2], part);
     if constexpr (kind == PairKind::vertex_face) {
         return (p.positive | q.positive | t.positive) & (p.negative | q.negative | t.negative);
     } else {
-        const StrictSign<L> s = strict_sign(edges[3], a, b);
+        const StrictSign<L> s = strict_sign(edges[3], part);
         return (p.positive & t.positive) | (p.negative & t.negative) | (q.positive & s.positive) | (q.negative & s.negative);
     }
 }
 
-/// The linear certificate on [a, b].
-template <PairKind kind, class T, class L>
-FASTCCD_INLINE LaneMask<L> separated_on(const PairCoefficientsOf<T>& pair, L a, L b)
+/// The linear certificate: a gap is nowhere less than at an end.
+template <PairKind kind, class T, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> separated_on(const PolynomialsOf<T>& pair, const Part<L>& part)
 {
-    const auto gap = [&](int axis, L s) FASTCCD_INLINE_LAMBDA {
-        const auto at = [&](int i) FASTCCD_INLINE_LAMBDA {
-            return lerp(in_lanes<L>(pair.start[i][axis]), in_lanes<L>(pair.end[i][axis]), s);
-        };
-        return axis_gap<kind, L>({at(0), at(1), at(2)});
-    };
     const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
-        return separated(gap(axis, a), gap(axis, b), in_lanes<L>(pair.gap_bound[axis]));
+        const auto sign = [&](int k) FASTCCD_INLINE_LAMBDA -> StrictSign<L> {
+            const auto& gap = pair.gaps[axis][k];
+            const Linear<L> g = on_part(Linear<L>{in_lanes<L>(gap.start), in_lanes<L>(gap.end)}, part);
+            const L bound = in_lanes<L>(gap.bound);
+            return {less(bound, min(g.c0, g.c1)), less(max(g.c0, g.c1), negated(bound))};
+        };
+        StrictSign<L> all = sign(0);
+        for (int k = 1; k < gap_count(kind); ++k) {
+            const StrictSign<L> s = sign(k);
+            all = {all.positive & s.positive, all.negative & s.negative};
+        }
+        return all.positive | all.negative;
     };
     return along(0) | along(1) | along(2);
 }
 
-/// True if one of the three proves absence on [a, b]. `met`: bits of lanes that do not matter.
-template <PairKind kind, class T, class L>
-FASTCCD_INLINE LaneMask<L> apart_on(const PairCoefficientsOf<T>& pair, L a, L b, unsigned met = 0)
+/// True if one of the three proves absence on a part. `met`: bits of lanes that do not matter.
+template <PairKind kind, class T, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> apart_on(const PolynomialsOf<T>& pair, const Part<L>& part, unsigned met = 0)
 {
     constexpr unsigned all = (1u << Lane<L>::width) - 1;
-    LaneMask<L> apart = never_coplanar(pair, a, b);
+    LaneMask<L> apart = never_coplanar(pair, part);
     for (const auto& edges : pair.edges) {
         if ((Lane<L>::bits(apart) | met) == all) return apart;
-        apart = apart | apart_along<kind>(edges, a, b);
+        apart = apart | apart_along<kind>(edges, part);
     }
-    return (Lane<L>::bits(apart) | met) == all ? apart : apart | separated_on<kind>(pair, a, b);
+    return (Lane<L>::bits(apart) | met) == all ? apart : apart | separated_on<kind>(pair, part);
+}
+template <PairKind kind, class T, class L>
+FASTCCD_INLINE LaneMask<L> apart_on(const PolynomialsOf<T>& pair, L a, L b, unsigned met = 0)
+{
+    return apart_on<kind>(pair, Between<L>{a, b}, met);
 }
 
 /// Eq. 7 on [a, b]: its middle, with delta half its width.
@@ -110,30 +152,31 @@ template <PairKind kind, class T, class L>
 FASTCCD_INLINE LaneMask<L> apart_by_area_on(const PairCoefficientsOf<T>& pair, L a, L b)
 {
     const L half = broadcast<L>(0.5) * (b - a);
-    return area_certificate<kind>(motion_of<L>(pair), {in_lanes<L>(pair.edge), in_lanes<L>(pair.speed)}, in_lanes<L>(pair.area_rounding), a + half, half);
+    return area_certificate<kind>(motion_of<L>(pair), {in_lanes<L>(pair.edge), in_lanes<L>(pair.speed)}, in_lanes<L>(pair.area_rounding),
+                                  time_in_step(pair, a + half), in_lanes<L>(pair.duration) * half);
 }
 
-/// The cubic has strict opposite signs at both ends of [a, b].
-template <class T, class L>
-FASTCCD_INLINE LaneMask<L> changes_sign_on(const PairCoefficientsOf<T>& pair, L a, L b)
+/// The cubic has strict opposite signs at both ends of a part.
+template <class T, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> changes_sign_on(const PolynomialsOf<T>& pair, const Part<L>& part)
 {
-    const Cubic<L> f = coplanarity_on(pair, a, b);
+    const Cubic<L> f = coplanarity_on(pair, part);
     const L bound = in_lanes<L>(pair.cubic_bound);
     return (less(bound, f.c0) & less(f.c3, negated(bound))) | (less(f.c0, negated(bound)) & less(bound, f.c3));
 }
 
-/// Every coplanar time of [a, b] is a contact: proper inclusion in some projection throughout.
-template <PairKind kind, class T, class L>
-FASTCCD_INLINE LaneMask<L> included_on(const PairCoefficientsOf<T>& pair, L a, L b)
+/// Every coplanar time of a part is a contact: proper inclusion in some projection throughout.
+template <PairKind kind, class T, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> included_on(const PolynomialsOf<T>& pair, const Part<L>& part)
 {
     constexpr unsigned all = (1u << Lane<L>::width) - 1;
     const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
         const auto& edges = pair.edges[axis];
-        const StrictSign<L> p = strict_sign(edges[0], a, b), q = strict_sign(edges[1], a, b), t = strict_sign(edges[2], a, b);
+        const StrictSign<L> p = strict_sign(edges[0], part), q = strict_sign(edges[1], part), t = strict_sign(edges[2], part);
         if constexpr (kind == PairKind::vertex_face) {
             return (p.positive & q.positive & t.positive) | (p.negative & q.negative & t.negative);
         } else {
-            const StrictSign<L> s = strict_sign(edges[3], a, b);
+            const StrictSign<L> s = strict_sign(edges[3], part);
             return ((p.positive & t.negative) | (p.negative & t.positive)) & ((q.positive & s.negative) | (q.negative & s.positive));
         }
     };

@@ -6,14 +6,18 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// Values expected to be that many times their bounds are probably beyond these, however they are rounded.
-inline constexpr double beyond_rounding = 3.0;
+/// Down to what a certificate is followed: so many of the bounds that it has to exceed, and margins (value_margin) beyond that.
+struct CertificateLevel {
+    double bounds, margins;
 
-/// Bernstein coefficients of a linear function.
-template <class L>
-struct Linear {
-    L c0, c1;
+    template <class L>
+    [[nodiscard]] FASTCCD_INLINE L operator()(L bound, L margin) const
+    {
+        return max(broadcast<L>(bounds) * bound + broadcast<L>(margins) * margin, broadcast<L>(0.0));
+    }
 };
+/// About where the pair may meet; and where values are probably beyond their bounds, however they are rounded.
+inline constexpr CertificateLevel zero_level{0.0, 0.0}, beyond_rounding{3.0, 0.0};
 
 /// A chord of the control polygon, from c0 to the coefficient c of this abscissa, is e at abscissa (c0 - e) / (c0 - c).
 template <class L>
@@ -68,55 +72,49 @@ struct SignEnd {
     L positive, negative;
 };
 
-/// Until its size is `room` times its bound; of Bernstein coefficients on [a, b].
+/// Until its size is down to `level`; of Bernstein coefficients on [a, b].
 template <class Polynomial, class L>
-FASTCCD_INLINE SignEnd<L> sign_end(const Polynomial& f, L bound, L room, L a, L b)
+FASTCCD_INLINE SignEnd<L> sign_end(const Polynomial& f, L bound, L level, L a, L b)
 {
-    const L end = on_whole(above_until(f, room * bound), a, b);
+    const L end = on_whole(above_until(f, level), a, b);
     return {select<L>(less(bound, f.c0), end, a), select<L>(less(f.c0, negated(bound)), end, a)};
 }
 
-/// The end of the last gap along an axis, of those that are open at a, b at most; a if none is. `room`: see last_certificate.
+/// The end of the last gap along an axis, of those that are open at a, b at most; a if none is. It ends when it is down to `level`.
 template <PairKind kind, class L>
-FASTCCD_INLINE L last_gap(const PairCoefficientsOf<L>& pair, L a, L b, L room)
+FASTCCD_INLINE L last_gap(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level)
 {
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     L last = a;
-    for (int axis = 0; axis < 3; ++axis) {  // as separated_on: of all vertices of one to all of the other, the first to meet
-        const auto motion = [&](int i) FASTCCD_INLINE_LAMBDA -> AxisMotion<L> { return {pair.start[i][axis], pair.end[i][axis]}; };
-        const AxisMotion<L> first[] = {{zero, zero}, motion(0)};
-        constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
-        const L bound = pair.gap_bound[axis];
-        Linear<L> gaps[6];
-        int count = 0;
-        LaneMask<L> above = less_equal(zero, zero), below = above;
-        for (int i = 0; i < vertices_of_first; ++i)
-            for (int j = vertices_of_first - 1; j < 3; ++j, ++count) {
-                const AxisMotion<L> second = motion(j);
-                gaps[count] = {second.at(a) - first[i].at(a), second.at(b) - first[i].at(b)};
-                above = above & less(bound, gaps[count].c0);
-                below = below & less(gaps[count].c0, negated(bound));
-            }
-        const LaneMask<L> open = above | below;
-        if (Lane<L>::bits(open) == 0) continue;
+    for (int axis = 0; axis < 3; ++axis) {  // as separated_on: all gaps, the first to end
         L until = one;
-        for (int k = 0; k < count; ++k) until = min(until, above_until(gaps[k], room * bound));
+        LaneMask<L> above = less_equal(zero, zero), below = above;
+        for (int k = 0; k < gap_count(kind); ++k) {
+            const auto& gap = pair.gaps[axis][k];
+            const Linear<L> whole{gap.start, gap.end}, g = on_interval(whole, a, b);
+            above = above & less(gap.bound, g.c0);
+            below = below & less(g.c0, negated(gap.bound));
+            until = min(until, above_until(g, level(gap.bound, value_margin(whole))));
+        }
+        const LaneMask<L> open = above | below;
         last = max(last, select<L>(open, on_whole(until, a, b), a));
     }
     return last;
 }
 
 /// The end of the last certificate of those that hold at a, b at most; a if none does. It ends when what it compares with its bound has come
-/// down to `room` times that: with 0, about when the pair may meet. A function of its own: much code, seldom run.
+/// down to `level`. A function of its own: much code, seldom run.
 template <PairKind kind, class L>
-__attribute__((noinline)) L last_certificate(const PairCoefficientsOf<L>& pair, L a, L b, L room)
+__attribute__((noinline)) L last_certificate(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level)
 {
-    const SignEnd<L> volume = sign_end(coplanarity_on(pair, a, b), pair.cubic_bound, room, a, b);
-    L last = max(last_gap<kind>(pair, a, b, room), max(volume.positive, volume.negative));
+    const Cubic<L> cubic{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]};
+    const SignEnd<L> volume = sign_end(on_interval(cubic, a, b), pair.cubic_bound, level(pair.cubic_bound, value_margin(cubic)), a, b);
+    L last = max(last_gap<kind>(pair, a, b, level), max(volume.positive, volume.negative));
     for (const auto& edges : pair.edges) {  // as apart_along
         const auto edge_function = [&](int edge) FASTCCD_INLINE_LAMBDA {
             const auto& e = edges[edge];
-            return sign_end(on_interval(Quadratic<L>{e.start, e.middle, e.end}, a, b), e.bound, room, a, b);
+            const Quadratic<L> whole{e.start, e.middle, e.end};
+            return sign_end(on_interval(whole, a, b), e.bound, level(e.bound, value_margin(whole)), a, b);
         };
         const SignEnd<L> p = edge_function(0), q = edge_function(1), t = edge_function(2);
         if constexpr (kind == PairKind::vertex_face) {

@@ -28,27 +28,14 @@ FASTCCD_INLINE L value_margin(const Quadratic<L>& q)
     return broadcast<L>((2 * 5.0 + 1.2) * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
 }
 
-/// A vertex along an axis, from start to end.
 template <class L>
-struct AxisMotion {
-    L start, end;
-
-    [[nodiscard]] FASTCCD_INLINE L at(L s) const { return lerp(start, end, s); }
-    [[nodiscard]] FASTCCD_INLINE L largest() const { return max(abs(start), abs(end)); }
-};
-
-/// The same for the difference of two positions, and those at the ends of the interval. Each position errs by 2.5 u of its larger
-/// magnitude, the difference by u of both, at one time; those of equal motions are equal.
-template <class L>
-FASTCCD_INLINE L value_margin(const AxisMotion<L>& p, const AxisMotion<L>& q)
+FASTCCD_INLINE L value_margin(const Linear<L>& f)
 {
-    const auto equal = [](L a, L b) FASTCCD_INLINE_LAMBDA { return less_equal(a, b) & less_equal(b, a); };
-    const L margin = broadcast<L>(2 * 3.6 * ErrorBounds::u) * (p.largest() + q.largest());
-    return select<L>(equal(p.start, q.start) & equal(p.end, q.end), broadcast<L>(0.0), margin);
+    return broadcast<L>((2 * 2.5 + 1.2) * ErrorBounds::u) * max(abs(f.c0), abs(f.c1));
 }
 
 template <class L>
-FASTCCD_INLINE LaneMask<L> may_be_coplanar(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> may_be_coplanar(const PolynomialsOf<L>& pair, L s)
 {
     const Cubic<L> f{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]};
     return less_equal(abs(on_interval(f, s, s).c0) + value_margin(f), pair.cubic_bound);
@@ -56,7 +43,7 @@ FASTCCD_INLINE LaneMask<L> may_be_coplanar(const PairCoefficientsOf<L>& pair, L 
 
 /// As apart_along, with the signs that edge functions may have throughout an interval.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> may_touch_along(const PairCoefficientsOf<L>& pair, int axis, L s)
+FASTCCD_INLINE LaneMask<L> may_touch_along(const PolynomialsOf<L>& pair, int axis, L s)
 {
     const auto sign = [&](int edge) FASTCCD_INLINE_LAMBDA -> StrictSign<L> {
         const auto& e = pair.edges[axis][edge];
@@ -75,26 +62,23 @@ FASTCCD_INLINE LaneMask<L> may_touch_along(const PairCoefficientsOf<L>& pair, in
 
 /// As separated_on along one axis: some vertex of the second primitive is not above, and some not below, some of the first.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> may_overlap_along(const PairCoefficientsOf<L>& pair, int axis, L s)
+FASTCCD_INLINE LaneMask<L> may_overlap_along(const PolynomialsOf<L>& pair, int axis, L s)
 {
     const L zero = broadcast<L>(0.0);
-    const auto motion = [&](int i) FASTCCD_INLINE_LAMBDA -> AxisMotion<L> { return {pair.start[i][axis], pair.end[i][axis]}; };
-    const AxisMotion<L> first[] = {{zero, zero}, motion(0)};
-    constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
     LaneMask<L> reaches_up = less(zero, zero), reaches_down = reaches_up;
-    for (int i = 0; i < vertices_of_first; ++i)
-        for (int j = vertices_of_first - 1; j < 3; ++j) {
-            const AxisMotion<L> second = motion(j);
-            const L gap = second.at(s) - first[i].at(s), needed = pair.gap_bound[axis] - value_margin(first[i], second);
-            reaches_up = reaches_up | !less(needed, gap);
-            reaches_down = reaches_down | !less(gap, negated(needed));
-        }
+    for (int k = 0; k < gap_count(kind); ++k) {
+        const auto& g = pair.gaps[axis][k];
+        const Linear<L> gap{g.start, g.end};
+        const L value = lerp(gap.c0, gap.c1, s), needed = g.bound - value_margin(gap);
+        reaches_up = reaches_up | !less(needed, value);
+        reaches_down = reaches_down | !less(value, negated(needed));
+    }
     return reaches_up & reaches_down;
 }
 
 /// Where no interval that contains s has one of the three certificates (apart_on), rounding included.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> meets_at(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> meets_at(const PolynomialsOf<L>& pair, L s)
 {
     LaneMask<L> meets = may_be_coplanar(pair, s);
     for (int axis = 0; axis < 3; ++axis) {

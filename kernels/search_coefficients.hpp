@@ -24,6 +24,23 @@ FASTCCD_INLINE void set_edge(PairCoefficientsOf<L>& pair, int edge, const Quadra
     along(2, [](const Vector3<L>& w) FASTCCD_INLINE_LAMBDA { return w.z; }, scale.xy);
 }
 
+/// From the motion that is set.
+template <PairKind kind, class L>
+FASTCCD_INLINE void set_gaps(PairCoefficientsOf<L>& pair, int axis, L bound)
+{
+    auto& gaps = pair.gaps[axis];
+    const auto set = [&](int k, int i) FASTCCD_INLINE_LAMBDA { gaps[k] = {pair.start[i][axis], pair.end[i][axis], bound}; };
+    if constexpr (kind == PairKind::vertex_face) {
+        for (int k = 0; k < 3; ++k) set(k, k);
+        gaps[3] = {broadcast<L>(0.0), broadcast<L>(0.0), broadcast<L>(0.0)};  // there is none
+    } else {
+        for (int k = 0; k < 2; ++k) {
+            set(k, k + 1);
+            gaps[k + 2] = {gaps[k].start - pair.start[0][axis], gaps[k].end - pair.end[0][axis], bound};
+        }
+    }
+}
+
 /// Of the motion `r`; `from_x1`, the motion relative to x1 with x0 in its place, is needed for two edges alone. Returns where the
 /// certificates on [0, 1], by the bounds of screening, prove the pair apart.
 template <PairKind kind, class L>
@@ -58,13 +75,16 @@ FASTCCD_INLINE LaneMask<L> find_coefficients(const RelativeMotion<L>& r, const R
         set_vector(pair.end[i], r.end[i]);
     }
     const L per_extent = broadcast<L>(bounds.linear_on_interval());
-    set_vector(pair.gap_bound, {per_extent * extents.x, per_extent * extents.y, per_extent * extents.z});
+    set_gaps<kind>(pair, 0, per_extent * extents.x);
+    set_gaps<kind>(pair, 1, per_extent * extents.y);
+    set_gaps<kind>(pair, 2, per_extent * extents.z);
     const Cubic<L> cubic = bernstein(f);
     pair.cubic[0] = cubic.c0, pair.cubic[1] = cubic.c1, pair.cubic[2] = cubic.c2, pair.cubic[3] = cubic.c3;
     pair.cubic_bound = cubic_bound(r, broadcast<L>(bounds.cubic_on_interval()) * scale.volume, bounds);
     const MotionBounds<L> motion = motion_bounds(r);
     pair.edge = motion.edge, pair.speed = motion.speed;
     pair.area_rounding = area_rounding(scale, bounds);
+    pair.origin = broadcast<L>(0.0), pair.duration = broadcast<L>(1.0);
     return apart;
 }
 

@@ -1,20 +1,21 @@
-// Contact at the very side or end of a primitive, of edges that stay parallel, of pairs that stay in one plane, or next to the end of a leaf:
-// as of meshes whose vertices lie on the same grid, or in scenes of two dimensions.
+// What a leaf holds in which contact is not proven: contact at the very side or end of a primitive, of edges that stay parallel, of pairs that stay in one
+// plane, or next to the end of a leaf, as of meshes whose vertices lie on the same grid, or in scenes of two dimensions; and near misses.
 //
-// There nothing proves contact within a leaf, and no part of it, however narrow, does. But where the pair meets, as far as rounding can tell,
-// at some time of the leaf, no part that contains this time has one of the three certificates either (nor eq. 7, but for rounding): halved
+// Certificates may lead through such a leaf, each from the end of the last one. Or they end, and where the pair meets right after that, as far as
+// rounding can tell, no part that contains this time has one of the three certificates (nor eq. 7, but for rounding): halved
 // down to the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, hardly any other search
-// would clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with a lower bound as close to that time
-// as a certificate on what is before it allows, or the leaf's start, if that is as close.
+// would clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with the end of the certificates as lower bound.
+// From the leaf's own polynomials (restriction.hpp), by which hardly a pair is in between.
 #pragma once
 
 #include <last_certificate.hpp>
+#include <restriction.hpp>
 #include <search_parameters.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// A time of [a, b] to look at, and one not after it, until when the pair is apart on [a, b], or a; guesses both. Expected: what lies between
-/// them, mostly what rounding hides, is less than half of [a, b].
+/// A time of a leaf to look at, and one not after it, until when the pair is apart in the leaf, or its start; guesses both, in shares of it. Expected:
+/// what lies between them, mostly what rounding hides, is less than half of the leaf.
 template <class L>
 struct LikelyTouch {
     L time, before;
@@ -22,72 +23,68 @@ struct LikelyTouch {
 };
 
 template <class L>
-FASTCCD_INLINE LikelyTouch<L> likely_touch(L time, L before, L a, L b)
+FASTCCD_INLINE LikelyTouch<L> likely_touch(L time, L before)
 {
-    const L within = max(before, a);
-    return {time, within, less_equal(a, time) & less_equal(time, b) & less(time - within, broadcast<L>(0.5) * (b - a))};
+    const L zero = broadcast<L>(0.0), within = max(before, zero);
+    return {time, within, less_equal(zero, time) & less_equal(time, broadcast<L>(1.0)) & less(time - within, broadcast<L>(0.5))};
 }
 
-/// At the zero of the cubic, if that is beyond its bound at a, by its chord and two corrections.
+/// At the zero of the cubic, if that is beyond its bound at the start, by its chord and two corrections.
 template <class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_cubic(const PairCoefficientsOf<L>& pair, L a, L b)
+FASTCCD_INLINE LikelyTouch<L> touch_by_cubic(const PolynomialsOf<L>& leaf)
 {
-    const Cubic<L> whole{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, f = on_interval(whole, a, b);
-    const L slope = f.c0 - f.c3, width = b - a;
-    L time = max(min(a + width * (f.c0 / slope), b), a);
-    for (int k = 0; k < 2; ++k) time = max(min(time + width * (on_interval(whole, time, time).c0 / slope), b), a);
-    LikelyTouch<L> likely = likely_touch(time, time - width * (broadcast<L>(4.0) * pair.cubic_bound / abs(slope)), a, b);
-    likely.expected = likely.expected & less(pair.cubic_bound, abs(f.c0));
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), slope = leaf.cubic[0] - leaf.cubic[3];
+    L time = max(min(leaf.cubic[0] / slope, one), zero);
+    for (int k = 0; k < 2; ++k) time = max(min(time + coplanarity_on(leaf, time, time).c0 / slope, one), zero);
+    LikelyTouch<L> likely = likely_touch(time, time - broadcast<L>(4.0) * leaf.cubic_bound / abs(slope));
+    likely.expected = likely.expected & less(leaf.cubic_bound, abs(leaf.cubic[0]));
     return likely;
 }
 
-/// At an end of certificates on [a, b]: `end(room)` as last_certificate. Of the lanes in `asked`.
-template <class L, class End>
-FASTCCD_INLINE LikelyTouch<L> touch_at_end(End end, L a, L b, LaneMask<L> asked)
+/// Until when certificates hold in a leaf, each from the end of the last one: 1 if throughout.
+template <class L>
+struct CertifiedUntil {
+    L end, last_start;  ///< last_start: of the last one of them.
+};
+
+/// How many are followed.
+inline constexpr int most_certificates_in_leaf = 6;
+/// Where a certificate still holds, however its values are rounded, and where it does not any more.
+inline constexpr CertificateLevel still_certain{1.0, 1.0}, just_lost{1.0, -1.5};
+
+/// Of the lanes in `asked`.
+template <PairKind kind, class L>
+FASTCCD_INLINE CertifiedUntil<L> certified_until(const PolynomialsOf<L>& leaf, LaneMask<L> asked)
 {
-    const L time = end(broadcast<L>(0.0));
-    const LaneMask<L> inside = asked & less(a, time) & less_equal(time, b);
-    L before = a;  // where none holds at a
-    if (Lane<L>::bits(inside) != 0) before = select<L>(inside, end(broadcast<L>(beyond_rounding)), a);
-    return likely_touch(time, before, a, b);
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    CertifiedUntil<L> found{zero, zero};
+    LaneMask<L> open = asked;
+    for (int k = 0; k < most_certificates_in_leaf; ++k) {
+        const L end = last_certificate<kind>(leaf, found.end, one, still_certain);
+        open = open & less(found.end, end);
+        if (Lane<L>::bits(open) == 0) break;
+        open = open & apart_on<kind>(leaf, found.end, end);
+        found = {select<L>(open, end, found.end), select<L>(open, found.end, found.last_start)};
+        open = open & less(end, one);
+    }
+    return found;
 }
 
-/// When gaps end: told better than by the cubic for edges that are nearly parallel.
+/// Right after the last certificate, whether what it is of goes on to zero or not: as between surfaces that glide along one another with less
+/// between them than rounding hides.
 template <PairKind kind, class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_gaps(const PairCoefficientsOf<L>& pair, L a, L b, LaneMask<L> asked)
+FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PolynomialsOf<L>& leaf, const CertifiedUntil<L>& until)
 {
-    return touch_at_end([&](L room) FASTCCD_INLINE_LAMBDA { return last_gap<kind>(pair, a, b, room); }, a, b, asked);
+    const L one = broadcast<L>(1.0);
+    return likely_touch(max(last_certificate<kind>(leaf, until.last_start, one, just_lost), until.end), until.end);
 }
 
-/// When the last certificate ends, told better by edge functions for pairs that stay in one plane.
-template <PairKind kind, class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PairCoefficientsOf<L>& pair, L a, L b, LaneMask<L> asked)
+/// Contact for certain within a part: a strict change of sign, and strict inclusion throughout.
+template <PairKind kind, template <class> class Part, class L>
+FASTCCD_INLINE LaneMask<L> contact_proven_on(const PolynomialsOf<L>& pair, const Part<L>& part)
 {
-    return touch_at_end([&](L room) FASTCCD_INLINE_LAMBDA { return last_certificate<kind>(pair, a, b, room); }, a, b, asked);
-}
-
-/// Where the last certificate is lost though nothing comes to zero, as between surfaces that glide along one another with less between them
-/// than rounding hides: shares of [a, b] before and after it at which it very probably holds, and does not. A choice, but in sum they are to
-/// be less than likely_touch expects.
-inline constexpr double held_before_loss = 0x1p-4, lost_after_loss = 0x1p-2;
-static_assert(held_before_loss + lost_after_loss < 0.5);
-/// In narrower leaves, of which rounding may hide many in a row where thin shapes meet, asking takes longer than it spares: measured at 1e-12,
-/// whose leaves have 2^-40 (bench/LIMITS.md), not at each width.
-inline constexpr double narrowest_lost = 0x1p-36;
-
-template <PairKind kind, class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_loss(const PairCoefficientsOf<L>& pair, L a, L b)
-{
-    const L lost = last_certificate<kind>(pair, a, b, broadcast<L>(1.0)), width = b - a;
-    return likely_touch(min(lost + broadcast<L>(lost_after_loss) * width, b), lost - broadcast<L>(held_before_loss) * width, a, b);
-}
-
-/// Contact for certain within [a, b]: a strict change of sign, and strict inclusion throughout.
-template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> contact_proven_on(const PairCoefficientsOf<L>& pair, L a, L b)
-{
-    const LaneMask<L> changes = changes_sign_on(pair, a, b);
-    return Lane<L>::bits(changes) == 0 ? changes : changes & included_on<kind>(pair, a, b);
+    const LaneMask<L> changes = changes_sign_on(pair, part);
+    return Lane<L>::bits(changes) == 0 ? changes : changes & included_on<kind>(pair, part);
 }
 
 /// Within less of a time, rounding hides every change of sign; within more, inclusion rarely lasts.
@@ -95,14 +92,14 @@ inline constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
 
 /// Contact for certain in some interval around s.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> contact_proven_near(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> contact_proven_near(const PolynomialsOf<L>& pair, L s)
 {
     LaneMask<L> proven = less(s, s), open = !proven;
     for (double reach = narrowest_proof; reach <= widest_proof && Lane<L>::bits(open) != 0; reach *= 8) {
-        const L a = max(s - broadcast<L>(reach), broadcast<L>(0.0)), b = min(s + broadcast<L>(reach), broadcast<L>(1.0));
-        open = open & included_on<kind>(pair, a, b);  // if not, nor, but for rounding, in anything wider
+        const Between<L> around{max(s - broadcast<L>(reach), broadcast<L>(0.0)), min(s + broadcast<L>(reach), broadcast<L>(1.0))};
+        open = open & included_on<kind>(pair, around);  // if not, nor, but for rounding, in anything wider
         if (Lane<L>::bits(open) == 0) break;
-        const LaneMask<L> changes = changes_sign_on(pair, a, b);
+        const LaneMask<L> changes = changes_sign_on(pair, around);
         proven = proven | (open & changes);
         open = open & !changes;
     }
@@ -120,14 +117,14 @@ inline constexpr double least_share = 0x1p-5;
 /// 1,500 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 2^11 u s, and
 /// README says 2^12; hill climbing came to 1,354 u s (nothing_invented_test.cpp).
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
+FASTCCD_INLINE LaneMask<L> has_area_at(const PolynomialsOf<L>& pair, L s)
 {
     const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
         // p + q + t is twice the area; of two edges, r1 x (r3 - r2) is t - p
         const auto& edges = pair.edges[axis];
         const L rest = broadcast<L>(1.0) - s;
         L area = broadcast<L>(0.0), bound = area;
-        for (int edge = 0; edge < (kind == PairKind::vertex_face ? 3 : 4); ++edge) {
+        for (int edge = 0; edge < edge_function_count(kind); ++edge) {
             const auto& f = edges[edge];
             const L value = (rest * f.start + broadcast<L>(2.0) * s * f.middle) * rest + s * s * f.end;
             if (kind == PairKind::vertex_face || edge == 2) area = area + value;
@@ -139,41 +136,41 @@ FASTCCD_INLINE LaneMask<L> has_area_at(const PairCoefficientsOf<L>& pair, L s)
     return along(0) | along(1) | along(2);
 }
 
-/// Whether two edges, neither much shorter than the pair is large, lie on one line at s, to within this share of the bounds of edge functions:
-/// an end's distance from the other edge's line is an area over a length.
+/// Whether two edges, neither much shorter than the pair is large, lie on one line at s, to within this share of what the bounds of edge functions
+/// allow: an end's distance from the other edge's line is an area over a length, and the shortest length allows the area to be as large as its bound.
 template <class L>
 FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s, L share)
 {
     const RelativeMotion<L> r = motion_of<L>(pair);
     const Vector3<L> r1 = position(r, 0, s), second = subtract(position(r, 2, s), position(r, 1, s));
     const L least = broadcast<L>(least_share) * pair.edge;
-    LaneMask<L> in_line = less(least, max(abs(r1.x), abs(r1.y), abs(r1.z))) & less(least, max(abs(second.x), abs(second.y), abs(second.z)));
+    const L shorter = min(max(abs(r1.x), abs(r1.y), abs(r1.z)), max(abs(second.x), abs(second.y), abs(second.z)));
+    LaneMask<L> in_line = less(least, shorter);
+    const L allowed = share * (shorter / least);
     for (const auto& edges : pair.edges) {
         if (Lane<L>::bits(in_line) == 0) return in_line;
         for (const auto& f : edges)
-            in_line = in_line & less_equal(abs(on_interval(Quadratic<L>{f.start, f.middle, f.end}, s, s).c0), share * f.bound);
+            in_line = in_line & less_equal(abs(on_interval(Quadratic<L>{f.start, f.middle, f.end}, s, s).c0), allowed * f.bound);
     }
     return in_line;
 }
 
-/// Whether a vertex of one is where a vertex of the other is, at s, to within this share of the bound of gaps: whatever their shapes, they are
-/// as close.
+/// Whether a vertex of one is where a vertex of the other is, at s, to within this share of 8 bounds of gaps: whatever their shapes, they are
+/// as close, some 8 x 12 u (8 x 30 u with t_max != 1) along each axis of its extent; with t_max = 1 that is within the 2^8 u of the sum of extents beyond which
+/// distances along directions tell them apart (apart_until).
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> share_vertex_at(const PairCoefficientsOf<L>& pair, L s, L share)
+FASTCCD_INLINE LaneMask<L> share_vertex_at(const PolynomialsOf<L>& pair, L s, L share)
 {
     const L zero = broadcast<L>(0.0);
-    constexpr int vertices_of_first = kind == PairKind::vertex_face ? 1 : 2;
     LaneMask<L> any = less(zero, zero);
-    for (int i = 0; i < vertices_of_first; ++i)
-        for (int j = vertices_of_first - 1; j < 3; ++j) {
-            LaneMask<L> same = less_equal(zero, zero);
-            for (int axis = 0; axis < 3; ++axis) {
-                const AxisMotion<L> first = i == 0 ? AxisMotion<L>{zero, zero} : AxisMotion<L>{pair.start[0][axis], pair.end[0][axis]};
-                const AxisMotion<L> second{pair.start[j][axis], pair.end[j][axis]};
-                same = same & less_equal(abs(second.at(s) - first.at(s)), share * pair.gap_bound[axis]);
-            }
-            any = any | same;
+    for (int k = 0; k < gap_count(kind); ++k) {
+        LaneMask<L> same = less_equal(zero, zero);
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto& gap = pair.gaps[axis][k];
+            same = same & less_equal(abs(lerp(gap.start, gap.end, s)), broadcast<L>(8.0) * share * gap.bound);
         }
+        any = any | same;
+    }
     return any;
 }
 
@@ -211,47 +208,50 @@ FASTCCD_INLINE L leaf_start(L time, const SearchParameters& parameters)
 /// In narrower leaves too few pairs touch for all to be looked at: what rounding hides is too large a part of them.
 inline constexpr double narrowest_touched = 0x1p-44;
 
-/// Whether a pair that is well shaped is in contact in [a, b] for all that rounding can tell, though nothing proves it, and until less than
-/// half of [a, b] before that apart for certain, or before a.
+/// Whether a pair that is well shaped is in contact in a leaf for all that rounding can tell, though nothing proves it, and until less than
+/// half of the leaf before that apart for certain, or before its start. Not where the lower bound would be time 0.
 template <class L>
 struct Touch {
-    LaneMask<L> present;
-    L time, lower_bound;  ///< When the pair meets; and until when it is apart on [a, b].
+    LaneMask<L> present, apart;  ///< Apart: for certain, throughout the leaf.
+    L time, lower_bound;         ///< When the pair meets; and until when it is apart in the leaf. Times of the step.
+    L likely;                    ///< Where neither: when contact is likely all the same, in shares of the leaf.
 };
 
-/// Of the lanes in `asked`.
+/// In `leaf`, which is `pair` over it (restriction.hpp); of the lanes in `asked`. Shapes and areas are told from the whole step.
 template <PairKind kind, class L>
-FASTCCD_INLINE Touch<L> touch_on(const PairCoefficientsOf<L>& pair, L a, L b, LaneMask<L> asked)
+FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoefficientsOf<L>& pair, LaneMask<L> asked)
 {
-    Touch<L> found{less(a, a), a, a};
-    const auto look_at = [&](const LikelyTouch<L>& likely) FASTCCD_INLINE_LAMBDA {
-        LaneMask<L> present = asked & likely.expected;
-        if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(pair, likely.time);
-        if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, likely.time, broadcast<L>(1.0));
-        if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, a, b);
-        if (Lane<L>::bits(present) != 0) present = present & (less_equal(likely.before, a) | apart_on<kind>(pair, a, likely.before));
-        found = {found.present | present, select<L>(present, likely.time, found.time), select<L>(present, likely.before, found.lower_bound)};
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    Touch<L> found{less(one, zero), less(one, zero), leaf.origin, leaf.origin, zero};
+    const auto look_at = [&](const LikelyTouch<L>& likely, bool is_apart_before) FASTCCD_INLINE_LAMBDA {
+        const L time = time_in_step(leaf, likely.time), until = earlier_in_step(leaf, likely.before);
+        LaneMask<L> present = asked & likely.expected & less(zero, until);
+        if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(leaf, likely.time);
+        if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, time, one);
+        if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, leaf.origin, leaf.origin + leaf.duration);
+        if (Lane<L>::bits(present) != 0 && !is_apart_before)
+            present = present & (less_equal(likely.before, zero) | apart_on<kind>(leaf, zero, likely.before));
+        found.present = found.present | present;
+        found.time = select<L>(present, time, found.time);
+        found.lower_bound = select<L>(present, until, found.lower_bound);
         asked = asked & !present;
     };
-    if (Lane<L>::bits(asked) != 0) look_at(touch_by_cubic(pair, a, b));
-    if (Lane<L>::bits(asked) != 0) look_at(touch_by_gaps<kind>(pair, a, b, asked));
-    // The others are for pairs whose volume tells nothing at a or, losses, ceases to in this leaf: twice its bound is ample for what it slowly
-    // changes by there.
-    const L volume = abs(coplanarity_on(pair, a, a).c0);
-    const LaneMask<L> nearly_flat = asked & less_equal(volume, broadcast<L>(2.0) * pair.cubic_bound);
-    asked = asked & less_equal(volume, pair.cubic_bound);
-    if (Lane<L>::bits(asked) != 0) look_at(touch_by_certificates<kind>(pair, a, b, asked));
-    // What is lost for good is lost at b, too: a look that spares most leaves the rest.
-    asked = nearly_flat & !found.present & less_equal(broadcast<L>(narrowest_lost), b - a);
-    if (Lane<L>::bits(asked) != 0) asked = asked & meets_at<kind>(pair, b);
-    if (Lane<L>::bits(asked) != 0) asked = asked & well_shaped_at<kind>(pair, b, broadcast<L>(1.0));
-    if (Lane<L>::bits(asked) != 0) look_at(touch_by_loss<kind>(pair, a, b));
+    if (Lane<L>::bits(asked) != 0) look_at(touch_by_cubic(leaf), false);
+    if (Lane<L>::bits(asked) != 0) {
+        const CertifiedUntil<L> until = certified_until<kind>(leaf, asked);
+        found.apart = asked & less_equal(one, until.end);
+        asked = asked & !found.apart;
+        if (Lane<L>::bits(asked) == 0) return found;
+        const LikelyTouch<L> likely = touch_by_certificates<kind>(leaf, until);
+        found.likely = likely.time;
+        look_at(likely, true);
+    }
     return found;
 }
 
 /// The cubic at time 0 is zero to within its bound.
 template <class L>
-FASTCCD_INLINE LaneMask<L> zero_at_start(const PairCoefficientsOf<L>& pair)
+FASTCCD_INLINE LaneMask<L> zero_at_start(const PolynomialsOf<L>& pair)
 {
     return less_equal(abs(pair.cubic[0]), pair.cubic_bound);
 }

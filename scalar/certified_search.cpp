@@ -2,9 +2,9 @@
 // certificate is dropped, a wider one is halved, and the first leaf without a certificate is the answer.
 // Everything before that leaf has a certificate, so its left end is a lower bound of the first contact.
 //
-// A leaf in which contact cannot be proven either is halved further, below E_tol: this removes near misses
-// that are apart by more than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. Not so where one look
-// tells both: that it would be in vain, and that until just before the pair is apart (touching.hpp).
+// A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses
+// that are apart by more than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up to
+// where it meets (touching.hpp); by halving it further where these do not tell.
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation

@@ -51,6 +51,9 @@ public:
         return clipped_step(pieces.f, Bracket<double>{pieces.time[k], pieces.time[k + 1]}, time);
     }
 
+    /// At a time that is known already.
+    explicit ExpectedContact(double known) : bound{0.0}, certificates{known}, pieces{}, next_piece{3} {}
+
 private:
     static constexpr double none_yet = -1.0;  ///< Before any time.
 
@@ -59,7 +62,7 @@ private:
     {
         double before = 0.0;  // after four of them, as many as most pairs have
         for (int k = 0; k < 3; ++k) before = last_certificate<kind>(pair, before, 1.0, beyond_rounding);
-        return last_certificate<kind>(pair, before, 1.0, 0.0);
+        return last_certificate<kind>(pair, before, 1.0, zero_level);
     }
 
     /// The value next to zero that a search coming from `value` meets first.

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <certified_search.hpp>
 #include <ordered_search.hpp>
+#include <pair_polynomials.hpp>
 
 namespace fastccd::scalar {
 
@@ -17,7 +19,7 @@ public:
     /// `lanes`: if there are any, several intervals are looked at in one go, with the same outcome.
     LeafSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters,
                const IntervalKernel* lanes = nullptr)
-        : pair{polynomials}, parameters{search_parameters}, search{polynomials, search_parameters, lanes}
+        : pair{polynomials}, parameters{search_parameters}, kernel{lanes}, search{polynomials.coefficients(), search_parameters, lanes}
     {
     }
 
@@ -32,7 +34,7 @@ public:
             if (pair.well_shaped_at_start()) touch = 0.0;
             return 0.0;
         }
-        if (is_leaf(whole)) return contact_in_leaf(whole);
+        if (is_leaf(whole)) return pair.apart(whole) ? none : contact_in_leaf(whole);
         IntervalStack stack;
         stack.push_halves(whole);  // it has no certificate
         unsigned limit = most_intervals, extensions = 0;
@@ -58,22 +60,34 @@ public:
     double contact_in_leaf(Interval leaf)
     {
         // A positive lower bound is wanted for a pair that is apart at time 0, proven contact or not.
-        if (leaf.a > 0.0) {
-            if (pair.contact_proven(leaf)) return leaf.a;
-            if (leaf.width() >= narrowest_touched) {
-                const Touch<double> found = pair.touch(leaf);
-                if (found.present.value) {
-                    touch = found.time;
-                    return found.lower_bound;
-                }
+        if (leaf.a > 0.0 && pair.contact_proven(leaf)) return leaf.a;
+        const PairCoefficients inside = pair.in_leaf(leaf);
+        std::optional<double> likely;
+        if (leaf.width() >= narrowest_touched) {
+            const Touch<double> found = pair.touch(inside);
+            likely = found.likely;
+            if (found.apart.value) return none;
+            if (found.present.value) {
+                touch = found.time;
+                return found.lower_bound;
             }
         }
-        const auto is_finest = [](Interval i) { return i.width() <= std::max(i.a * finest_relative, finest_at_zero); };
-        const unsigned limit = std::min(search.intervals + most_intervals_in_leaf, most_intervals);
+        // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in each part.
+        // Their ends are times of the step, all of them doubles, as they are not halved below finest_relative.
+        const bool is_first = leaf.a == 0.0;
+        const PairCoefficients& whole = is_first ? pair.coefficients() : inside;
+        const auto in_step = [&](double s) { return time_in_step(whole, s); };
+        const auto is_finest = [&](Interval i) {
+            return i.width() * whole.duration <= std::max(in_step(i.a) * finest_relative, finest_at_zero);
+        };
+        OrderedSearch<kind> parts{whole, parameters, kernel};
+        if (likely) parts.expect(is_first ? time_in_step(inside, *likely) : *likely);
+        parts.intervals = search.intervals;
         IntervalStack stack;
-        stack.push(leaf);
-        const auto part = search.next_without_certificate(stack, true, limit, is_finest);
-        return part ? part->a : none;
+        stack.push(is_first ? leaf : Interval{0.0, 1.0});
+        const auto part = parts.next_without_certificate(stack, true, std::min(search.intervals + most_intervals_in_leaf, most_intervals), is_finest);
+        search.intervals = parts.intervals;
+        return part ? in_step(part->a) : none;
     }
 
     /// After first_contact() has found something at s: whether there is contact for certain, in the leaf that s lies in or
@@ -108,6 +122,7 @@ private:
 
     const PairPolynomials<kind>& pair;
     const SearchParameters& parameters;
+    const IntervalKernel* kernel;
     OrderedSearch<kind> search;
     Interval leaf_of_answer{0.0, 1.0};  ///< Where first_contact() found contact.
     double touch = none;                ///< And where it touches in there (touching.hpp).

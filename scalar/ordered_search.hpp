@@ -11,16 +11,15 @@
 
 #include <expected_contact.hpp>
 #include <interval_stack.hpp>
-#include <pair_polynomials.hpp>
 
 namespace fastccd::scalar {
 
 template <PairKind kind>
 class OrderedSearch {
 public:
-    /// Without `lanes`, or with a kernel that has none for intervals, they are looked at one at a time.
-    OrderedSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters, const IntervalKernel* lanes)
-        : pair{polynomials}, parameters{search_parameters}
+    /// Over [0, 1] of the coefficients. Without `lanes`, or with a kernel that has none for intervals, they are looked at one at a time.
+    OrderedSearch(const PairCoefficients& coefficients, const SearchParameters& search_parameters, const IntervalKernel* lanes)
+        : pair{coefficients}, parameters{search_parameters}
     {
         if (lanes != nullptr) kernel = *lanes;
     }
@@ -38,12 +37,15 @@ public:
             }
             const Interval i = stack.pop();
             ++intervals;
-            if (pair.apart(i) || (by_area && pair.apart_by_area(i))) continue;
+            if (apart_on<kind>(pair, i.a, i.b).value || (by_area && apart_by_area_on<kind>(pair, i.a, i.b).value)) continue;
             if (intervals > limit || narrowest(i)) return i;
             stack.push_halves(i);
         }
         return std::nullopt;
     }
+
+    /// Before anything is looked at: where contact is expected, if that is known.
+    void expect(double time) { expected.emplace(time); }
 
     unsigned intervals = 0;  ///< Counted.
 
@@ -64,7 +66,7 @@ private:
     template <class Narrowest>
     std::optional<Interval> look_at_several(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
     {
-        if (!expected) expected.emplace(pair.coefficients(), parameters);
+        if (!expected) expected.emplace(pair, parameters);
         const Interval next = stack.peek(0);
         const double target = expected->from(next.a);
         if (target == ExpectedContact::nowhere) return look_at_halves(stack, by_area, narrowest);
@@ -112,7 +114,7 @@ private:
         for (unsigned k = questions.size; k < kernel.lanes; ++k) questions.put(k, questions.at(0));
         unsigned met = 0;
         for (unsigned k = 0; k < kernel.lanes; ++k) met |= unsigned{questions.starts[k] <= meeting && meeting <= questions.ends[k]} << k;
-        return kernel.apart(pair.coefficients(), questions.starts, questions.ends, met, by_area);
+        return kernel.apart(pair, questions.starts, questions.ends, met, by_area);
     }
 
     /// Whether the pair meets where it is expected to: most that come this far do, and intervals around that time need not be looked at.
@@ -121,7 +123,7 @@ private:
         if (target == tried) return;
         tried = target;
         const double root = expected->root();
-        meeting = root != ExpectedContact::nowhere && meets_at<kind>(pair.coefficients(), root).value ? root : ExpectedContact::nowhere;
+        meeting = root != ExpectedContact::nowhere && meets_at<kind>(pair, root).value ? root : ExpectedContact::nowhere;
     }
 
     /// Intervals that wait, each with its halves.
@@ -196,7 +198,7 @@ private:
         return std::nullopt;
     }
 
-    const PairPolynomials<kind>& pair;
+    const PairCoefficients& pair;
     const SearchParameters& parameters;
     IntervalKernel kernel{};
     /// Found when lanes are asked for the first time: for pairs that rest on one another, which are told by one look, it would take longer than all else.

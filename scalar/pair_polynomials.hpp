@@ -39,12 +39,21 @@ public:
     [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return coplanarity_on(pair, i.a, i.b); }
     [[nodiscard]] double cubic_bound() const { return pair.cubic_bound; }
 
+    /// The same over a leaf, for its parts (restriction.hpp).
+    [[nodiscard]] PairCoefficients in_leaf(Interval leaf) const
+    {
+        PairCoefficients inside = pair;
+        static_cast<PolynomialsOf<double>&>(inside) = restricted_to<kind>(pair, leaf.a, leaf.b);
+        add_rounding_on_parts<kind>(inside);
+        return inside;
+    }
+
     /// True if every coplanar time of the interval is a contact: proper inclusion in some projection.
-    [[nodiscard]] bool included(Interval i) const { return included_on<kind>(pair, i.a, i.b).value; }
+    [[nodiscard]] bool included(Interval i) const { return included_on<kind>(pair, Between<double>{i.a, i.b}).value; }
 
     // See touching.hpp.
-    [[nodiscard]] Touch<double> touch(Interval i) const { return touch_on<kind>(pair, i.a, i.b, less_equal(i.a, i.b)); }
-    [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair, i.a, i.b).value; }
+    [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf) const { return touch_in<kind>(leaf, pair, less_equal(0.0, 1.0)); }
+    [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair, Between<double>{i.a, i.b}).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair, s).value; }
     [[nodiscard]] bool zero_at_start() const { return FASTCCD_KERNEL_NAMESPACE::zero_at_start(pair).value; }
     [[nodiscard]] bool in_contact_at_start(double leaf_width) const { return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair, leaf_width).value; }

@@ -28,106 +28,104 @@ FASTCCD_INLINE LaneMask<L> is_unscaled(const RelativeMotion<L>& step, const Rela
     return along(s.x, e.x) & along(s.y, e.y) & along(s.z, e.z);
 }
 
-/// In terms of lanes: see TouchAnswers. `both_apart`: in the leaf asked for, and in the next one.
-template <class L>
-struct LeafContacts {
-    LaneMask<L> reported, proven, both_apart, apart, start_in_doubt;
-    L time;
-};
-
-/// What the search finds in the leaves that start at `left`, for pairs that are in contact there, proven or as far as rounding can tell.
+/// Sets the bounds of `part` to those of `whole` and `times` its margins (meeting.hpp). A certificate by bound and margin on an interval is one by
+/// the bound on each part of it; and one by the bound on an interval is one by bound less margin on each part.
 template <PairKind kind, class L>
-__attribute__((noinline)) LeafContacts<L> answer_in_leaf(const PairCoefficientsOf<L>& pair, L left, L width, LaneMask<L> asked)
+FASTCCD_INLINE void set_bounds(PolynomialsOf<L>& part, const PolynomialsOf<L>& whole, double times)
 {
-    const L right = left + width;
-    const LaneMask<L> proven = asked & contact_proven_on<kind>(pair, left, right), none = less(left, left);
-    const Touch<L> touch = touch_on<kind>(pair, left, right, asked & !proven);
-    LeafContacts<L> found{proven | touch.present, proven, none, none, none, select<L>(proven, left, touch.lower_bound)};
-    if (Lane<L>::bits(touch.present) != 0) found.proven = proven | (touch.present & contact_proven_near<kind>(pair, touch.time));
-    return found;
+    const L factor = broadcast<L>(times);
+    part.cubic_bound = whole.cubic_bound + factor * value_margin(Cubic<L>{whole.cubic[0], whole.cubic[1], whole.cubic[2], whole.cubic[3]});
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int edge = 0; edge < edge_function_count(kind); ++edge) {
+            const auto& e = whole.edges[axis][edge];
+            part.edges[axis][edge].bound = e.bound + factor * value_margin(Quadratic<L>{e.start, e.middle, e.end});
+        }
+        for (int k = 0; k < gap_count(kind); ++k) {
+            const auto& gap = whole.gaps[axis][k];
+            part.gaps[axis][k].bound = gap.bound + factor * value_margin(Linear<L>{gap.start, gap.end});
+        }
+    }
 }
 
-/// The pair with its bounds and `times` the margins such that a certificate by bound and margin on an interval is one for the search on each
-/// part of it (meeting.hpp).
 template <PairKind kind, class L>
-FASTCCD_INLINE PairCoefficientsOf<L> with_margins(const PairCoefficientsOf<L>& pair, double times)
+FASTCCD_INLINE PolynomialsOf<L> with_margins(const PolynomialsOf<L>& pair)
 {
-    PairCoefficientsOf<L> sure = pair;
-    const L factor = broadcast<L>(times);
-    sure.cubic_bound = pair.cubic_bound + factor * value_margin(Cubic<L>{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]});
-    for (auto& edges : sure.edges)
-        for (int edge = 0; edge < (kind == PairKind::vertex_face ? 3 : 4); ++edge) {
-            auto& e = edges[edge];
-            e.bound = e.bound + factor * value_margin(Quadratic<L>{e.start, e.middle, e.end});
-        }
-    for (int axis = 0; axis < 3; ++axis) {
-        // Of both vertices of a gap, each of which may have the largest coordinate.
-        const auto motion = [&](int i) FASTCCD_INLINE_LAMBDA -> AxisMotion<L> { return {pair.start[i][axis], pair.end[i][axis]}; };
-        const L largest = max(motion(0).largest(), motion(1).largest(), motion(2).largest());
-        sure.gap_bound[axis] = pair.gap_bound[axis] + factor * (broadcast<L>(4 * 3.6 * ErrorBounds::u) * largest);
-    }
+    PolynomialsOf<L> sure = pair;
+    set_bounds<kind>(sure, pair, 1.0);
     return sure;
 }
 
-/// A pair, and what certificates of it are to exceed: to prove, and, with half a margin more for the rounding of a value, to be looked for.
-template <PairKind kind, class L>
-struct Certificates {
-    PairCoefficientsOf<L> proven, expected;
-
-    FASTCCD_INLINE explicit Certificates(const PairCoefficientsOf<L>& pair)
-        : proven{with_margins<kind>(pair, 1.0)}, expected{with_margins<kind>(pair, 1.5)}
-    {
-    }
-};
+/// Down to what those are looked for: with half a margin more, for the rounding of a value.
+inline constexpr CertificateLevel level_with_margins{1.0, 1.5};
 
 /// How many certificates, one after the other, are looked for: of pairs in one plane, four leave 17 % more to the search, eight 6 % less.
 inline constexpr int most_certificates = 6;
 
-/// The search finds the pair apart before `apart`. Before what time it does so, too, by the last certificates of `time` on, each from shortly
-/// before the end of the last one.
-///
-/// Only a part that begins before such an overlap and ends after it may have no certificate: one a level. An overlap is longer than the finest
-/// parts are (leaf_search.hpp), so the search halves that part until its parts have one. It reports no leaf there, as a pair that meets
-/// (meets_at) has no certificate then. With at most two overlaps within a leaf's width it examines 400 parts of a leaf at most, two on each
-/// of 100 levels for either, where 512 are allowed.
+/// The search finds each leaf before `time`, the start of one, apart. The start of which other leaf before which it does so, too, by one certificate after
+/// the other, each from the start of the leaf in which the last one ends: no leaf is apart by two of them, so each is by itself. `sure`: with_margins.
 template <PairKind kind, class L>
-FASTCCD_INLINE L apart_from(const Certificates<kind, L>& pair, L time, L apart, L leaf_width, LaneMask<L> open)
+FASTCCD_INLINE L apart_before(const PolynomialsOf<L>& pair, const PolynomialsOf<L>& sure, L time, const SearchParameters& parameters,
+                              LaneMask<L> open)
 {
-    const L one = broadcast<L>(1.0), earliest_end = broadcast<L>(8 * finest_at_zero);
-    L last_end = broadcast<L>(-1.0), end_before = last_end;
-    for (int k = 0; k < most_certificates; ++k) {
-        const L end = last_certificate<kind>(pair.expected, time, one, one);
-        open = open & less(apart, end) & apart_on<kind>(pair.proven, time, end);
-        apart = select<L>(open, end, apart);
-        open = open & less(end, one) & less(earliest_end, end) & less(leaf_width, end - end_before);
+    const L one = broadcast<L>(1.0);
+    for (int k = 0; k < most_certificates && Lane<L>::bits(open) != 0; ++k) {
+        const L end = last_certificate<kind>(pair, time, one, level_with_margins), left = leaf_start(end, parameters);
+        open = open & less(time, left);
         if (Lane<L>::bits(open) == 0) break;
-        end_before = last_end;
-        last_end = end;
-        time = select<L>(open, end - max(end * broadcast<L>(0x1p-50), broadcast<L>(4 * finest_at_zero)), time);
+        open = open & apart_on<kind>(sure, time, end);
+        time = select<L>(open, left, time);
+        open = open & less(left, one);
     }
-    return apart;
+    return time;
 }
 
-/// What the search finds in the leaf that starts at `left` or, if that is apart, in the next one; nothing in the first leaf and after 1.
+/// In terms of lanes. Apart: throughout what was asked for, a leaf, two, or the step.
+template <class L>
+struct Contacts {
+    LaneMask<L> reported, proven, apart;
+    L time;  ///< Where reported.
+};
+
+/// What the search finds in the leaves that start at `left`.
 template <PairKind kind, class L>
-FASTCCD_INLINE LeafContacts<L> answer_in_two_leaves(const PairCoefficientsOf<L>& pair, L left, L width, LaneMask<L> asked)
+__attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>& pair, L left, L width, LaneMask<L> asked)
+{
+    const Throughout<L> all;
+    PolynomialsOf<L> leaf = restricted_to<kind>(pair, left, left + width);
+    const LaneMask<L> apart = asked & apart_on<kind>(leaf, all);
+    const LaneMask<L> certain = contact_proven_on<kind>(leaf, all), proven = asked & certain & less(broadcast<L>(0.0), left);
+    const LaneMask<L> open = asked & !apart & !proven;
+    Contacts<L> found{proven, proven, apart, left};
+    if (Lane<L>::bits(open) == 0) return found;
+
+    add_rounding_on_parts<kind>(leaf);
+    const Touch<L> touch = touch_in<kind>(leaf, pair, open);
+    found.apart = apart | touch.apart;
+    if (Lane<L>::bits(touch.present) == 0) return found;
+    // The search comes to this leaf if nothing around it has a certificate: if the pair meets, or if the leaf has none even by less than the bounds.
+    LaneMask<L> comes_here = meets_at<kind>(pair, touch.time);
+    if (Lane<L>::bits(touch.present & !comes_here) != 0) {
+        set_bounds<kind>(leaf, pair, -1.0);
+        comes_here = comes_here | !apart_on<kind>(leaf, all);
+    }
+    const LaneMask<L> present = touch.present & comes_here;
+    found.reported = proven | present;
+    if (Lane<L>::bits(present) != 0) found.proven = proven | (present & (certain | contact_proven_near<kind>(pair, touch.time)));
+    found.time = select<L>(present, touch.lower_bound, left);
+    return found;
+}
+
+/// What the search finds in the leaf that starts at `left` or, if that is apart, in the next one.
+template <PairKind kind, class L>
+FASTCCD_INLINE Contacts<L> answer_in_two_leaves(const PairCoefficientsOf<L>& pair, L left, L width, LaneMask<L> asked)
 {
     const L one = broadcast<L>(1.0), next = left + width;
-    const LaneMask<L> none = less(left, left);
-    LeafContacts<L> found{none, none, none, none, none, left};
-    asked = asked & less_equal(next, one);
-    if (Lane<L>::bits(asked) == 0) return found;
-    const LaneMask<L> apart = asked & apart_on<kind>(pair, left, min(next, one));
-    const LaneMask<L> here = asked & less(broadcast<L>(0.0), left) & !apart, in_next = apart & less_equal(next + width, one);
-    if (Lane<L>::bits(here) != 0) found = answer_in_leaf<kind>(pair, left, width, here);
+    Contacts<L> found = answer_in_leaf<kind>(pair, left, width, asked & less_equal(next, one));
+    const LaneMask<L> in_next = found.apart & less(next, one);
     if (Lane<L>::bits(in_next) == 0) return found;
-    const LeafContacts<L> there = answer_in_leaf<kind>(pair, next, width, in_next);
-    const LaneMask<L> open = in_next & !there.reported;
-    if (Lane<L>::bits(open) != 0) found.both_apart = open & apart_on<kind>(pair, next, next + width);
-    found.reported = found.reported | there.reported;
-    found.proven = found.proven | there.proven;
-    found.time = select<L>(there.reported, there.time, found.time);
-    return found;
+    const Contacts<L> there = answer_in_leaf<kind>(pair, next, width, in_next);
+    return {found.reported | there.reported, found.proven | there.proven, (found.apart & !in_next) | there.apart,
+            select<L>(there.reported, there.time, found.time)};
 }
 
 /// The pairs of a batch, as the search sees them.
@@ -160,28 +158,28 @@ FASTCCD_INLINE SearchedPairs<L> searched_pairs(const double* coordinates, unsign
     return searched;
 }
 
-/// Pairs that may be in contact in the leaves that start at `left`, or in the next ones.
-template <PairKind kind, class L>
-FASTCCD_INLINE LeafContacts<L> contact_in_leaves(const SearchedPairs<L>& searched, L left, const SearchParameters& parameters)
-{
-    LeafContacts<L> found = answer_in_two_leaves<kind>(searched.pair, left, broadcast<L>(parameters.leaf_width), searched.open);
-    found.apart = searched.apart;
-    return found;
-}
+/// How often a leaf is asked for and, if the pair is apart there and in the next one, what comes after. Apart from those that contain the end of a
+/// certificate or such a leaf, all intervals have a certificate: in all the search examines 3,000 at most, below its cap, two on each of 50 levels for 24
+/// certificates and six leaves.
+inline constexpr int most_leaves_asked = 3;
 
-/// How often a leaf is asked for and, if the pair is apart there and in the next one, what comes after. In all the search examines less than
-/// 2,400 intervals, far below its cap: two on each of 100 levels for ten overlaps, and of 50 for four leaves.
-inline constexpr int most_leaves_asked = 2;
+/// See TouchAnswers.
+template <class L>
+struct TouchOfPairs {
+    Contacts<L> contacts;
+    LaneMask<L> start_in_doubt;
+};
 
 /// Pairs that may be in contact in any leaf.
 template <PairKind kind, class L>
-FASTCCD_INLINE LeafContacts<L> contact_anywhere(const SearchedPairs<L>& searched, const SearchParameters& parameters)
+FASTCCD_INLINE TouchOfPairs<L> contact_anywhere(const SearchedPairs<L>& searched, const SearchParameters& parameters)
 {
     const PairCoefficientsOf<L>& pair = searched.pair;
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), width = broadcast<L>(parameters.leaf_width);
     const LaneMask<L> none = less(one, zero);
-    LeafContacts<L> found{none, none, none, searched.apart, none, zero};
-    const auto add = [&](const LeafContacts<L>& there) FASTCCD_INLINE_LAMBDA {
+    TouchOfPairs<L> answers{{none, none, searched.apart, zero}, none};
+    Contacts<L>& found = answers.contacts;
+    const auto add = [&](const Contacts<L>& there) FASTCCD_INLINE_LAMBDA {
         found.reported = found.reported | there.reported;
         found.proven = found.proven | there.proven;
         found.time = select<L>(there.reported, there.time, found.time);
@@ -191,31 +189,24 @@ FASTCCD_INLINE LeafContacts<L> contact_anywhere(const SearchedPairs<L>& searched
     const LaneMask<L> at_start = open & in_contact_at_start<kind>(pair, width);
     if (Lane<L>::bits(at_start) != 0) {
         found.reported = at_start & well_shaped_at_start<kind>(pair);
-        found.start_in_doubt = at_start & !found.reported;
+        answers.start_in_doubt = at_start & !found.reported;
         open = open & !at_start;
     }
-    if (Lane<L>::bits(open) == 0) return found;
+    if (Lane<L>::bits(open) == 0) return answers;
 
-    // Most whose cubic tells nothing are kept apart by a gap.
-    const Certificates<kind, L> certificates{pair};
-    const L gap = last_gap<kind>(certificates.expected, zero, one, one);
-    const LaneMask<L> apart_before = open & less(gap, one) & separated_on<kind>(certificates.proven, zero, gap);
-    add(answer_in_two_leaves<kind>(pair, leaf_start(gap, parameters), width, apart_before));
-    open = open & !found.reported;
-
-    L time = zero, apart = zero;
-    for (int k = 0; k < most_leaves_asked && Lane<L>::bits(open) != 0; ++k) {
-        apart = apart_from<kind>(certificates, time, apart, width, open);
-        found.apart = found.apart | (open & less_equal(one, apart));
-        open = open & less(zero, apart) & less(apart, one);
-        if (Lane<L>::bits(open) == 0) break;
-        const L left = leaf_start(apart, parameters);
-        const LeafContacts<L> there = answer_in_two_leaves<kind>(pair, left, width, open);
+    const PolynomialsOf<L> sure = with_margins<kind>(pair);
+    L time = zero;
+    for (int k = 0; Lane<L>::bits(open) != 0; ++k) {
+        time = apart_before<kind>(pair, sure, time, parameters, open);
+        found.apart = found.apart | (open & less_equal(one, time));
+        open = open & less(time, one);
+        if (k == most_leaves_asked || Lane<L>::bits(open) == 0) break;
+        const Contacts<L> there = answer_in_two_leaves<kind>(pair, time, width, open);
         add(there);
-        open = open & there.both_apart;
-        time = apart = left + broadcast<L>(2.0) * width;
+        open = open & there.apart;
+        time = min(time + broadcast<L>(2.0) * width, one);
     }
-    return found;
+    return answers;
 }
 
 /// Calls answer<kind>(number of the first pair) for each batch of a block.
@@ -236,16 +227,19 @@ void touching_block(PairKind kind, const double* block, const SearchParameters& 
     answers.reported = answers.proven = answers.apart = answers.start_in_doubt = 0;
     const auto answer = [&]<PairKind pair_kind>(unsigned first) FASTCCD_INLINE_LAMBDA {
         const SearchedPairs<L> searched = searched_pairs<pair_kind, L>(block, first, parameters);
-        LeafContacts<L> found;
-        if constexpr (anywhere)
-            found = contact_anywhere<pair_kind>(searched, parameters);
-        else
-            found = contact_in_leaves<pair_kind>(searched, Lane<L>::load(&answers.left[first]), parameters);
+        Contacts<L> found;
+        if constexpr (anywhere) {
+            const TouchOfPairs<L> touch = contact_anywhere<pair_kind>(searched, parameters);
+            found = touch.contacts;
+            answers.start_in_doubt |= Lane<L>::bits(touch.start_in_doubt) << first;
+        } else {
+            found = answer_in_two_leaves<pair_kind>(searched.pair, Lane<L>::load(&answers.left[first]), broadcast<L>(parameters.leaf_width), searched.open);
+            found.apart = searched.apart;
+        }
         Lane<L>::store(&answers.time[first], found.time);
         answers.reported |= Lane<L>::bits(found.reported) << first;
         answers.proven |= Lane<L>::bits(found.proven) << first;
         answers.apart |= Lane<L>::bits(found.apart) << first;
-        answers.start_in_doubt |= Lane<L>::bits(found.start_in_doubt) << first;
     };
     for_each_batch<L>(kind, answer);
 }

@@ -184,35 +184,41 @@ mutant 'value margin of positions = 0' $meeting 's/2 \* 3\.6 \* ErrorBounds::u/0
 
 # ---- Contact that nothing proves, at a side, an end, or next to a leaf's end
 # Not among them: that eq. 7 does not keep the pair apart, in a leaf or at time 0, as halving would hardly ever come to another verdict; that
-# edges without an area lie on one line, as no two were found that meet where gaps end and do not; and that undecided pairs are not asked
-# about, which saves time alone. Nor what certificates that follow one another are asked for beside holding: that they overlap, with two places a
-# leaf at most, not next to time 0. They end by bounds and margins, which the search does not ask for, so they overlap in any case, and it
-# needs few parts there. Nor that the first gap holds, which is looked for where it does.
+# edges without an area lie on one line, as no two were found that meet where gaps end and do not; that undecided pairs are not asked
+# about, which saves time alone; and how close vertices have to be to be shared, a choice.
 touching=kernels/touching.hpp in_leaves=simd/touching_pairs.hpp
-mutant 'touch: whether they meet or not' $touching 's/present = present & meets_at<kind>\(pair, likely\.time\)/static_cast<void>(0)/' touching_test truth_test
-mutant 'touch: not certain to be apart before' $touching 's/ & \(less_equal\(likely\.before, a\) \| apart_on<kind>\(pair, a, likely\.before\)\)//' touching_test
-mutant 'touch: of any shape' $touching 's/present = present & well_shaped_at<kind>\(pair, likely\.time, broadcast<L>\(1\.0\)\)/static_cast<void>(0)/' truth_test touching_test nothing_invented_test
-mutant 'touch: half a leaf before' $touching 's/ & less\(time - within, broadcast<L>\(0\.5\) \* \(b - a\)\)//' touching_test
+mutant 'touch: whether they meet or not' $touching 's/present = present & meets_at<kind>\(leaf, likely\.time\)/static_cast<void>(0)/' touching_test truth_test
+mutant 'touch: not certain to be apart before' $touching 's/present = present & \(less_equal\(likely\.before, zero\) \| apart_on<kind>\(leaf, zero, likely\.before\)\)/static_cast<void>(0)/' touching_test truth_test stress
+mutant 'touch: of any shape' $touching 's/present = present & well_shaped_at<kind>\(pair, time, one\)/static_cast<void>(0)/' truth_test touching_test nothing_invented_test
+mutant 'touch: half a leaf before' $touching 's/ & less\(time - within, broadcast<L>\(0\.5\)\)//' touching_test
 mutant 'touch: area of edges by their sum' $touching 's/area = area - value/area = area + value/' touching_test
-mutant 'touch: gaps not looked at' $touching 's/if \(Lane<L>::bits\(asked\) != 0\) look_at\(touch_by_gaps<kind>\(pair, a, b, asked\)\);//' touching_test
-mutant 'touch: certificates not looked at' $touching 's/if \(Lane<L>::bits\(asked\) != 0\) look_at\(touch_by_certificates<kind>\(pair, a, b, asked\)\);//' touching_test
+mutant 'touch: certificates not looked at' $touching 's/look_at\(likely, true\);//' touching_test
 mutant 'touch: contact at the start whatever the certificates' $touching 's/present = present & !apart_on<kind>\(pair, zero, zero\)/static_cast<void>(0)/' touching_test ordered_search_test truth_test
 mutant 'touch: lanes, apart throughout' $in_leaves 's/open = unscaled & !apart;/open = unscaled;/' same_bits_test touching_test
 mutant 'touch: lanes, axes that are scaled' $in_leaves 's/open = unscaled & !apart;/open = !apart;/' same_bits_test touching_test extreme_range_test stress
-mutant 'touch: lanes, the next leaf without a look' $in_leaves 's/apart = asked & apart_on<kind>\(pair, left, min\(next, one\)\)/apart = asked/' touching_test same_bits_test
-mutant 'touch: lanes, proven nearby forgotten' $in_leaves 's/proven \| \(touch\.present & contact_proven_near<kind>\(pair, touch\.time\)\)/proven/' touching_test
+mutant 'touch: lanes, leaves apart without a look' $in_leaves 's/apart = asked & apart_on<kind>\(leaf, all\)/apart = asked/' touching_test same_bits_test
+mutant 'touch: lanes, proven nearby forgotten' $in_leaves 's/ \| contact_proven_near<kind>\(pair, touch\.time\)//' touching_test
 mutant 'touch: lanes, apart before not asked (root)' simd/root_stages.hpp 's/leaf\.inner & bracket\.certain & apart_before/leaf.inner & bracket.certain/' same_bits_test touching_test stress
-mutant 'touch: lanes, apart before not asked (certificates)' $in_leaves 's/less\(apart, end\) & apart_on<kind>\(pair\.proven, time, end\)/less(apart, end)/' touching_test
-mutant 'touch: lanes, certificates without margins' $in_leaves 's/const L factor = broadcast<L>\(times\)/const L factor = broadcast<L>(0.0 * times)/' touching_test
-mutant 'touch: lanes, certificates with gaps between them' $in_leaves 's/end - max\(end/end + max(end * broadcast<L>(1024.0)/' touching_test
+mutant 'touch: lanes, apart before not asked (certificates)' $in_leaves 's/open = open & apart_on<kind>\(sure, time, end\)/static_cast<void>(0)/' touching_test
+mutant 'touch: lanes, certificates without margins' $in_leaves 's/set_bounds<kind>\(sure, pair, 1\.0\)/set_bounds<kind>(sure, pair, 0.0)/' touching_test
+mutant 'touch: lanes, certificates with gaps between them' $in_leaves 's/time = select<L>\(open, left, time\)/time = select<L>(open, end, time)/' touching_test
 mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/at_start & well_shaped_at_start<kind>\(pair\)/at_start/' touching_test same_bits_test
 mutant 'touch: lanes, start in doubt, whatever is seen' kernels/start_in_doubt.hpp 's/return !certified_at\(sight\.reach, zero\)/return less_equal(zero, zero)/' touching_test
 mutant 'touch: lanes, start in doubt, of other units' kernels/start_in_doubt.hpp 's/look<kind>\(equal, extents\(equal\)/look<kind>(r, extents(r)/' touching_test
 mutant 'touch: lanes, start in doubt left to the search' $in_leaves 's/start_in_doubt = at_start & !found\.reported/start_in_doubt = none/' touching_test
 mutant 'touch: at the start in line by bounds' $touching 's/well_shaped_at<kind>\(pair, zero, zero\)/well_shaped_at<kind>(pair, zero, broadcast<L>(1.0))/' touching_test
 mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair\.well_shaped_at_start\(\)\) touch/touch/' never_zero_test nothing_invented_test touching_test
-mutant 'touch: lanes, on where only one leaf is apart' $in_leaves 's/open = open & there\.both_apart;/open = open \& !there.reported;/' touching_test
-mutant 'touch: losses not looked at' $touching 's/if \(Lane<L>::bits\(asked\) != 0\) look_at\(touch_by_loss<kind>\(pair, a, b\)\);//' touching_test
+mutant 'touch: lanes, on where only one leaf is apart' $in_leaves 's/\(found\.apart & !in_next\) \| there\.apart/found.apart/' touching_test
+mutant 'touch: certificates that do not hold' $touching 's/open = open & apart_on<kind>\(leaf, found\.end, end\)/static_cast<void>(0)/' touching_test truth_test stress nothing_invented_test
+mutant 'touch: apart where certificates end' $touching 's/found\.apart = asked & less_equal\(one, until\.end\)/found.apart = asked/' touching_test truth_test
+mutant 'touch: at time 0' $touching 's/likely\.expected & less\(zero, until\)/likely.expected/' never_zero_test touching_test ordered_search_test
+mutant 'touch: rounding on parts forgotten' kernels/restriction.hpp 's/\(2\.5 \* levels \+ 0\.2\) \* ErrorBounds::u/(0.5 * levels) * ErrorBounds::u/' error_bounds_test
+mutant 'touch: times rounded to nearest' kernels/restriction.hpp 's/broadcast<L>\(1\.0 - 2 \* ErrorBounds::u\)/broadcast<L>(1.0)/' error_bounds_test
+mutant 'touch: the first leaf by its own polynomials' scalar/leaf_search.hpp 's/is_first = leaf\.a == 0\.0/is_first = leaf.a < 0.0/' ordered_search_test
+mutant 'touch: lanes, whether the search comes to the leaf' $in_leaves 's/present = touch\.present & comes_here/present = touch.present/' touching_test same_bits_test stress
+mutant 'touch: lanes, wider intervals by the bounds' $in_leaves 's/set_bounds<kind>\(leaf, pair, -1\.0\)/set_bounds<kind>(leaf, pair, 0.0)/' touching_test same_bits_test stress
+mutant 'touch: lanes, the first leaf by its start' $in_leaves 's/asked & certain & less\(broadcast<L>\(0\.0\), left\)/asked \& certain/' touching_test same_bits_test
+mutant 'touch: lanes, the first leaf without its proof' $in_leaves 's/present & \(certain \| /present \& (/' touching_test
 mutant 'touch: lanes, the last note counts' simd/lane_results.hpp 's/if \(is_first\) scratch/scratch/' same_bits_test touching_test stress
 mutant 'touch: whatever contact is before' scheduler/touching_blocks.cpp 's/if \(!\(scratch\.time\[i\] < scratch\.touch_time\[i\]\)\) \(scratch/(scratch/' same_bits_test touching_test stress
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/product \* \(1\.0 - 0x1p-52\)/product/' error_bounds_test

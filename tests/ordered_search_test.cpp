@@ -100,7 +100,7 @@ void expect_same_walk(const oracle::Pair& pair, const SearchParameters& paramete
     const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
     const auto is_leaf = [&](scalar::Interval i) { return i.width() <= parameters.leaf_width; };
     const auto walk = [&](const IntervalKernel* lanes, scalar::IntervalStack& stack, unsigned& counted) {
-        scalar::OrderedSearch<kind> search{polynomials, parameters, lanes};
+        scalar::OrderedSearch<kind> search{polynomials.coefficients(), parameters, lanes};
         stack.push_halves({0.0, 1.0});
         const auto found = search.next_without_certificate(stack, false, limit, is_leaf);
         counted = search.intervals;

@@ -176,6 +176,28 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
         }
 }
 
+/// Apart at the start, in contact within the first leaf: by a time that is not 0, and proven by what is proven of the leaf.
+TEST(Touching, LanesProveContactInTheFirstLeaf)
+{
+    const oracle::Pair pair{{{-0x1.4157f1b4b4718p-2, 0x1.0cc5735144d05p+0, 0x1.56551fc0d46bbp-2},
+                             {-0x1.d03c089d6cbecp-1, 0x1.3679c999d9f27p+0, 0x1.bb8bc83c2d254p-2},
+                             {0x1.04c641f821e5p-4, 0x1.2784428bb1ce6p+0, 0x1.5b64ba97d7d6p-2},
+                             {-0x1.789028e086496p-2, 0x1.08f355b6a2f46p+0, 0x1.559c09a21d135p-2},
+                             {-0x1.e0abc997be04cp-2, 0x1.8270b3e39ce32p-2, 0x1.71b0df04a0771p-1},
+                             {-0x1.0ff2fa4778c45p+0, 0x1.14a10682f8b73p-1, 0x1.a44c33424cd3ep-1},
+                             {-0x1.78891d940469cp-4, 0x1.ed6bf0cd50de2p-2, 0x1.7438ac70222c3p-1},
+                             {-0x1.0bf20061c7ee8p-1, 0x1.73283d791576p-2, 0x1.715453f544cadp-1}}};
+    const SearchParameters parameters{1.0, 1.0, false};
+    const scalar::SearchResult found = scalar::certified_search(PairKind::vertex_face, pair[0].data(), parameters);
+    EXPECT_GT(found.toi, 0.0);
+    EXPECT_EQ(found.proof, scalar::Proof::leaf);
+    for (const Isa isa : isas_to_test()) {
+        Compared seen;
+        compare_lanes<PairKind::vertex_face>(*kernel_table(isa), {pair}, parameters, "in the first leaf", seen);
+        EXPECT_EQ(seen.proven, 1u) << name(isa);
+    }
+}
+
 /// Two edges in line and apart by 16 u of their size at the start, never closer than that: distances along directions tell.
 TEST(Touching, InLineAtTheStartIsToldFromContact)
 {

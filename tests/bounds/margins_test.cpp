@@ -65,6 +65,11 @@ TEST(Margins, CubicOnIntervals)
     }, ordinary_shifts, effort);
 }
 
+using portable::largest;
+using portable::smallest;
+double smallest(const portable::Linear<double>& f) { return std::min(f.c0, f.c1); }
+double largest(const portable::Linear<double>& f) { return std::max(f.c0, f.c1); }
+
 /// A value in the middle of an interval against the coefficients there, as a multiple of the margin.
 template <class Polynomial>
 double value_ratio(const Polynomial& whole, const Input& in)
@@ -72,7 +77,7 @@ double value_ratio(const Polynomial& whole, const Input& in)
     const double a = std::min(in.a, in.b), b = std::max(in.a, in.b), s = std::clamp(0.5 * (a + b), a, b);
     const Polynomial local = portable::on_interval(whole, a, b);
     const double value = portable::on_interval(whole, s, s).c0;
-    return std::max(portable::smallest(local) - value, value - portable::largest(local)) / portable::value_margin(whole);
+    return std::max(smallest(local) - value, value - largest(local)) / portable::value_margin(whole);
 }
 
 TEST(Margins, ValuesWithinIntervals)
@@ -82,12 +87,9 @@ TEST(Margins, ValuesWithinIntervals)
         const auto q = portable::cross_product(Computed{in}.r, 0, 1);
         return value_ratio(Quadratic<double>{q.start.x, 0.5 * q.twice_middle.x, q.end.x}, in);
     }, ordinary_shifts, effort);
-    expect_bound("value_margin, positions", 0.02, [](const Input& in) {
+    expect_bound("value_margin, gaps", 0.02, [](const Input& in) {
         const Computed c{in};
-        const portable::AxisMotion<double> p{c.r.start[0].x, c.r.end[0].x}, q{c.r.start[1].x, c.r.end[1].x};
-        const auto gap = [&](double s) { return q.at(s) - p.at(s); };
-        const double a = std::min(in.a, in.b), b = std::max(in.a, in.b), at_s = gap(std::clamp(0.5 * (a + b), a, b));
-        return std::max(std::min(gap(a), gap(b)) - at_s, at_s - std::max(gap(a), gap(b))) / portable::value_margin(p, q);
+        return value_ratio(portable::Linear<double>{c.r.start[1].x - c.r.start[0].x, c.r.end[1].x - c.r.end[0].x}, in);
     }, ordinary_shifts, effort);
 }
 
