@@ -105,7 +105,7 @@ struct ErrorBounds {
         return (4 * rho + 6 + quadratic_blossom_levels + slack) * u;
     }
     /// Difference of two coordinates at a time; times X: each errs by rho + 3, and the difference by 2. Where differences at both ends, which
-    /// err by 2 rho + 2 and are at most X in size, are interpolated instead, 2 rho + 5.
+    /// err by 2 rho + 2 and are at most 2 X in size, are interpolated instead, the same: a lerp adds 6.
     [[nodiscard]] FASTCCD_INLINE constexpr double linear_on_interval() const { return (2 * rho + 8 + slack) * u; }
 
     // ---- Margins with which lanes decide (DESIGN: same verdict as the certified search) -----------

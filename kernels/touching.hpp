@@ -113,9 +113,9 @@ inline constexpr double least_share = 0x1p-5;
 /// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some
 /// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp; 31 u with t_max != 1), is as large as any at any time of the step. A
 /// height is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that. With area, little: it is 1/39 of
-/// the terms m of an edge function, or more. A volume that is all rounding, 13 u of three such m times an extent, is a height of 39 x 3 x 13 u, some
-/// 1,500 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 2^11 u s, and
-/// README says 2^12; hill climbing came to 1,354 u s (nothing_invented_test.cpp).
+/// the terms m of an edge function, or more. A volume that is all rounding, 23 u of three such m times an extent, is a height of 39 x 3 x 23 u, some
+/// 2,700 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 3,200 u s (where the m of the
+/// other projections are no larger), and README says 2^12; hill climbing came to 2,629 u s, random pairs to 2^10 (nothing_invented_test.cpp).
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> has_area_at(const PolynomialsOf<L>& pair, L s)
 {

@@ -55,8 +55,8 @@ public:
         return none;
     }
 
-    /// For a leaf without a certificate: `none` if it is apart after all; its left end if contact is proven
-    /// inside; otherwise a time just before it touches there, or the left end of the first part that cannot be cleared.
+    /// For a leaf without a certificate: `none` if it is apart after all; its left end, but for the first leaf, if contact is
+    /// proven inside; otherwise a time just before it touches there, or the left end of the first part that cannot be cleared.
     double contact_in_leaf(Interval leaf)
     {
         // A positive lower bound is wanted for a pair that is apart at time 0, proven contact or not.
