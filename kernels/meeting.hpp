@@ -5,11 +5,13 @@
 // lies between the coefficients on the interval, which would all have to be beyond a bound.
 //
 // Both are computed. One lerp errs by 2.5 u M at most, M the larger magnitude of its operands: by u M of both products, (1 - s) M + s M in
-// size, by u M of their sum, and by u / 2 M as 1 - s is rounded. Blossoms of n levels err by 2.5 n u C, C the largest coefficient on
-// [0, 1]. So if all coefficients that the search computes on an interval are beyond its bound, a value computed at s within is beyond that
-// bound less twice that much. It is not: so they are not. The sum or difference of bound and margin is rounded by u C at most, as there are no
-// coefficients beyond a bound that is greater than C; a fifth of u is for terms in u^2. Of the bound of an edge function, 13 u or more
-// of the sum of its terms, this leaves 1.8 u at least for the rounding of a value that is zero.
+// size, by u M of their sum, and by u / 2 M as 1 - s is rounded. Blossoms of n levels err by 2.5 n u C, C the largest coefficient on [0,
+// 1]. So if all coefficients that the search computes on an interval are beyond its bound, a value computed at s within is beyond that
+// bound less twice that much. It is not: so they are not. The sum or difference of bound and margin is rounded by u C at most, as there are
+// no coefficients beyond a bound that is greater than C; a fifth of u is for terms in u^2. Of the bound of an edge function, 13 u or more
+// of the sum of its terms (12 u where the bound from extents is the smaller one, magnitudes.hpp), this leaves 0.8 u at least for the
+// rounding of a value that is zero. Of that of a gap, 12 u of the extent, it leaves nothing where the gap is up to twice the extent: then
+// no look says that the pair meets. Over a leaf in which it does, C is small (restriction.hpp).
 #pragma once
 
 #include <interval_certificates.hpp>

@@ -1,10 +1,11 @@
-// What a leaf holds in which contact is not proven: contact at the very side or end of a primitive, of edges that stay parallel, of pairs that stay in one
-// plane, or next to the end of a leaf, as of meshes whose vertices lie on the same grid, or in scenes of two dimensions; and near misses.
+// What a leaf holds in which contact is not proven: contact at the very side or end of a primitive, of edges that stay parallel, of pairs
+// that stay in one plane, or next to the end of a leaf, as of meshes whose vertices lie on the same grid, or in scenes of two dimensions;
+// and near misses.
 //
-// Certificates may lead through such a leaf, each from the end of the last one. Or they end, and where the pair meets right after that, as far as
-// rounding can tell, no part that contains this time has one of the three certificates (nor eq. 7, but for rounding): halved
-// down to the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, hardly any other search
-// would clear it either. So it is reported at once, by the search and, with the same bits, by lanes; with the end of the certificates as lower bound.
+// Certificates may lead through such a leaf, each from the end of the last one. Or they end, and where the pair meets right after that, as
+// far as rounding can tell, no part that contains this time has one of the three certificates (nor eq. 7, but for rounding): halved down to
+// the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, hardly any other search would clear
+// it either. So it is reported at once, by the search and, with the same bits, by lanes; with the end of the certificates as lower bound.
 // From the leaf's own polynomials (restriction.hpp), by which hardly a pair is in between.
 #pragma once
 
@@ -14,8 +15,8 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// A time of a leaf to look at, and one not after it, until when the pair is apart in the leaf, or its start; guesses both, in shares of it. Expected:
-/// what lies between them, mostly what rounding hides, is less than half of the leaf.
+/// A time of a leaf to look at, and one not after it, until when the pair is apart in the leaf, or its start; guesses both, in shares of
+/// it. Expected: what lies between them, mostly what rounding hides, is less than half of the leaf.
 template <class L>
 struct LikelyTouch {
     L time, before;
@@ -110,12 +111,14 @@ FASTCCD_INLINE LaneMask<L> contact_proven_near(const PolynomialsOf<L>& pair, L s
 /// the step, for a pair that counts as well shaped. A choice, not a bound: who is well shaped is spared a look.
 inline constexpr double least_share = 0x1p-5;
 
-/// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some
-/// projection at s: 2^49 times their bound, some 13 u (magnitudes.hpp; 31 u with t_max != 1), is as large as any at any time of the step. A
-/// height is a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that. With area, little: it is 1/39 of
-/// the terms m of an edge function, or more. A volume that is all rounding, 23 u of three such m times an extent, is a height of 39 x 3 x 23 u, some
-/// 2,700 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 3,200 u s (where the m of the
-/// other projections are no larger), and README says 2^12; hill climbing came to 2,629 u s, random pairs to 2^10 (nothing_invented_test.cpp).
+/// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some projection
+/// at s: 2^49 times their bound, some 13 u (magnitudes.hpp; 31 u with t_max != 1), is as large as any at any time of the step. A height is
+/// a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that. With area, little: it is 1/39 of the terms m
+/// of an edge function, or more. A volume that is all rounding, 23 u of three such m times an extent, is a height of 39 x 3 x 23 u, some
+/// 2,700 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 3,200 u s (where
+/// the m of the other projections are no larger), and README says 2^12; hill climbing came to 2,463 u s, random pairs stay within 2^10
+/// (nothing_invented_test.cpp). Parts of a leaf have 7.7 u and 5.2 u of its coefficients more in their bounds: what is next to zero in it
+/// changes by w v times an area or length there, so that adds 39 x (3 x 7.7 + 5.2) u < 2^-42 of E_tol v, which README has beside.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> has_area_at(const PolynomialsOf<L>& pair, L s)
 {
@@ -155,9 +158,9 @@ FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s
     return in_line;
 }
 
-/// Whether a vertex of one is where a vertex of the other is, at s, to within this share of 8 bounds of gaps: whatever their shapes, they are
-/// as close, some 8 x 12 u (8 x 30 u with t_max != 1) along each axis of its extent; with t_max = 1 that is within the 2^8 u of the sum of extents beyond which
-/// distances along directions tell them apart (apart_until).
+/// Whether a vertex of one is where a vertex of the other is, at s, to within this share of 8 bounds of gaps: whatever their shapes, they
+/// are as close, some 8 x 12 u (8 x 30 u with t_max != 1) along each axis of its extent; with t_max = 1 that is within the 2^8 u of the sum
+/// of extents beyond which distances along directions tell them apart (apart_until).
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> share_vertex_at(const PolynomialsOf<L>& pair, L s, L share)
 {
@@ -205,7 +208,7 @@ FASTCCD_INLINE L leaf_start(L time, const SearchParameters& parameters)
     return select<L>(less(scaled, nearest), nearest - broadcast<L>(1.0), nearest) * broadcast<L>(parameters.leaf_width);
 }
 
-/// In narrower leaves too few pairs touch for all to be looked at: what rounding hides is too large a part of them.
+/// In narrower leaves too few pairs are told so for all to be looked at: what rounding hides is too large a part of them.
 inline constexpr double narrowest_touched = 0x1p-44;
 
 /// Whether a pair that is well shaped is in contact in a leaf for all that rounding can tell, though nothing proves it, and until less than

@@ -1,10 +1,10 @@
 // The interval [0, 1] is cut into 2^depth leaves. Intervals are examined earliest first; one with a
 // certificate is dropped, a wider one is halved, and the first leaf without a certificate is the answer.
-// Everything before that leaf has a certificate, so its left end is a lower bound of the first contact.
+// Everything before that leaf has a certificate, as a whole or in parts, so its left end is a lower bound of the first contact.
 //
-// A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses
-// that are apart by more than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up to
-// where it meets (touching.hpp); by halving it further where these do not tell.
+// A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses that are apart by more
+// than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up
+// to where it meets (touching.hpp); by halving it further where these do not tell.
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation

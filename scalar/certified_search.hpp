@@ -9,11 +9,11 @@
 
 namespace fastccd::scalar {
 
-/// Cap on the intervals halved for one pair, far above what any pair of the public data needs. On reaching it those still waiting,
-/// some hundred at most, are examined once. One without a certificate that is wider than a leaf gets `extension` more, and so
-/// do `most_extensions` of them; a leaf, or the first after those, is the answer: contact, with the lower bound reached. So one
-/// pair takes at most 4,096 + 16 * 64 intervals and what waits. Counting roots has 4,096 for itself, and no number if they are
-/// used up.
+/// Cap on the intervals halved for one pair, far above what any pair of the public data needs. On reaching it those still waiting, some
+/// hundred at most, are examined once. One without a certificate that is wider than a leaf gets `extension` more, and so do
+/// `most_extensions` of them; a leaf, or the first after those, is the answer: contact, with the lower bound reached. So one pair takes at
+/// most 4,096 + 16 * 64 intervals and what waits, and before a leaf is halved the certificates of one look at it (touching.hpp), some eight
+/// times what an interval takes, which are not counted. Counting roots has 4,096 for itself, and no number if they are used up.
 inline constexpr unsigned most_intervals = 4096, extension = 64, most_extensions = 16;
 
 /// What is certain about a contact that is reported.

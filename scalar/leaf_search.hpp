@@ -72,8 +72,8 @@ public:
                 return found.lower_bound;
             }
         }
-        // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in each part.
-        // Their ends are times of the step, all of them doubles, as they are not halved below finest_relative.
+        // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in
+        // each part. Their ends are times of the step, all of them doubles, as they are not halved below finest_relative.
         const bool is_first = leaf.a == 0.0;
         const PairCoefficients& whole = is_first ? pair.coefficients() : inside;
         const auto in_step = [&](double s) { return time_in_step(whole, s); };

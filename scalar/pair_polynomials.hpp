@@ -32,14 +32,11 @@ public:
     /// True if one of the three certificates proves absence on the interval.
     [[nodiscard]] bool apart(Interval i) const { return apart_on<kind>(pair, i.a, i.b).value; }
 
-    /// Eq. 7 on the interval.
-    [[nodiscard]] bool apart_by_area(Interval i) const { return apart_by_area_on<kind>(pair, i.a, i.b).value; }
-
     /// Bernstein coefficients of the coplanarity cubic on the interval, each within cubic_bound().
     [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return coplanarity_on(pair, i.a, i.b); }
     [[nodiscard]] double cubic_bound() const { return pair.cubic_bound; }
 
-    /// The same over a leaf, for its parts (restriction.hpp).
+    /// The pair's polynomials over a leaf, with the bounds for its parts (restriction.hpp).
     [[nodiscard]] PairCoefficients in_leaf(Interval leaf) const
     {
         PairCoefficients inside = pair;

@@ -302,7 +302,7 @@ private:
         const unsigned crossing = lanes & Lane<L>::bits(crosses);
         const unsigned contact = crossing & Lane<L>::bits(inclusion.present);
         unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
-        // The search looks at eq. 7, by the same text, before it asks whether a pair touches.
+        // The search asks for eq. 7 of the leaf, by the same text, before it reports it as one in which nothing is proven, by a look or by halving.
         if ((undecided & crossing) != 0)
             undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds)));
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);

@@ -111,7 +111,7 @@ std::string search_proof(const oracle::Pair& pair, const SearchParameters& param
     const PairPolynomials<kind> polynomials{coordinates(pair), parameters};
     if (polynomials.apart()) return "search, whole";
     if (polynomials.apart(i)) return "search";
-    if (polynomials.apart_by_area(i)) return "search, area";
+    if (portable::apart_by_area_on<kind>(polynomials.coefficients(), i.a, i.b).value) return "search, area";
     return {};
 }
 
@@ -268,7 +268,7 @@ public:
             const double inside = i.a + std::floor(uniform(bits) * (i.b - i.a) / w) * w;
             for (const double a : {i.a, inside, i.b - w}) {
                 const Interval leaf{a, a + w};
-                if (a < until && !polynomials.apart(leaf) && !polynomials.apart_by_area(leaf)) return a;
+                if (a < until && !polynomials.apart(leaf) && !portable::apart_by_area_on<kind>(polynomials.coefficients(), leaf.a, leaf.b).value) return a;
             }
         }
         return until;

@@ -157,14 +157,14 @@ mutant 'search: edge functions by sign alone' $intervals 's/in_lanes<L>\(e\.boun
 mutant 'search: axis gaps by sign alone' $search 's/per_extent = broadcast<L>\(bounds\.linear_on_interval\(\)\)/per_extent = broadcast<L>(0.0)/' certificates_test truth_test stress
 mutant 'search: inclusion by two of three' $intervals 's/p\.positive & q\.positive & t\.positive/p.positive & q.positive/' truth_test nothing_invented_test same_bits_test stress
 mutant 'search: proof by sign alone' $intervals 's/in_lanes<L>\(pair\.cubic_bound\);(\s*return \(less\(bound, f\.c0\))/broadcast<L>(0.0);$1/' certificates_test truth_test nothing_invented_test same_bits_test stress
-mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/if \(leaf\.a > 0\.0\) \{/if (leaf.a >= 0.0) {/' never_zero_test
+mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/if \(leaf\.a > 0\.0 && pair/if (leaf.a >= 0.0 \&\& pair/' never_zero_test
 mutant 'search: coarse next to time 0' kernels/touching.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
 mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/false \&\& leaves/' nothing_invented_test never_zero_test
 mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair\.has_area\(s\)//' nothing_invented_test never_zero_test
 mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/result.proof == Proof::none \&\& leaves/' nothing_invented_test
-mutant 'search: doubts in the units of each axis' scalar/separation_search.cpp 's/std::frexp\(extent, &exponent\);//' same_bits_test
+mutant 'search: doubts in the units of each axis' kernels/start_in_doubt.hpp 's/broadcast<L>\(0\.5\) \/ power_of_two\(extent\)/broadcast<L>(1.0)/' same_bits_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
-mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && pair\.apart_by_area\(i\)\)//' ordered_search_test
+mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && apart_by_area_on<kind>\(pair, i\.a, i\.b\)\.value\)//' ordered_search_test
 mutant 'several: answers for other intervals' scalar/ordered_search.hpp 's/if \(!\(questions\.at\(k\) == i\)\) continue;//' ordered_search_test
 mutant 'several: the way taken whatever the answers' scalar/ordered_search.hpp 's/if \(\(\(answers \^ apart\)[^;]*;//' ordered_search_test
 mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel\.lanes <= limit/intervals <= limit/' ordered_search_test
@@ -180,7 +180,7 @@ mutant 'meeting whatever the edge functions' $meeting 's/ & may_touch_along<kind
 mutant 'meeting whatever the gaps' $meeting 's/ & may_overlap_along<kind>\(pair, axis, s\)//' ordered_search_test
 mutant 'value margin of cubics = 0' $meeting 's/\(2 \* 7\.5 \+ 1\.2\) \* ErrorBounds::u/0x1p-200/' error_bounds_test
 mutant 'value margin of quadratics = 0' $meeting 's/\(2 \* 5\.0 \+ 1\.2\) \* ErrorBounds::u/0x1p-200/' error_bounds_test
-mutant 'value margin of positions = 0' $meeting 's/2 \* 3\.6 \* ErrorBounds::u/0x1p-200/' error_bounds_test
+mutant 'value margin of gaps = 0' $meeting 's/\(2 \* 2\.5 \+ 1\.2\) \* ErrorBounds::u/0x1p-200/' error_bounds_test
 
 # ---- Contact that nothing proves, at a side, an end, or next to a leaf's end
 # Not among them: that eq. 7 does not keep the pair apart, in a leaf or at time 0, as halving would hardly ever come to another verdict; that

@@ -261,7 +261,7 @@ TEST(NothingInvented, FoundByHillClimbing)
     EXPECT_GT(worst.beyond, 0.1 * thin_bound) << "no longer the worst: another is to be looked for";
 }
 
-/// The farthest with area that hill climbing has found: farther than random ones.
+/// With area, found by hill climbing: farther than random ones.
 TEST(NothingInvented, WithArea)
 {
     const oracle::Pair pair{{{0x1.d047bd25aeecdp-15, 0x1.1fcf62d64772bp-9, -0x1.d0283d92da29bp-10},
@@ -276,6 +276,23 @@ TEST(NothingInvented, WithArea)
     measure_all(oracle::Kind::edge_edge, {pair}, 1e-9, worst);
     expect_close(oracle::Kind::edge_edge, "with area", 1e-9, worst, 0x1p12 * u);
     EXPECT_GT(worst.beyond, well_shaped_bound) << "no longer the worst: another is to be looked for";
+}
+
+/// The farthest with area that hill climbing has found, in leaves so narrow that rounding decides alone.
+TEST(NothingInvented, WithAreaInNarrowLeaves)
+{
+    const oracle::Pair pair{{{-0x1.673d455843da8p-22, 0x1.959604ef8105ap-25, 0x1.f58252e2ece57p-25},
+                             {0x1.5ca8f4b713829p-30, -0x1.7f0650f78b051p-27, 0x1.80751941b0fap-29},
+                             {0x1.5cea22d7ca0d9p-30, -0x1.0a7c9b05b067bp-29, -0x1.83c51a78a9a5p-29},
+                             {0x1.5a2f6ecc2ea5dp-30, -0x1.302030d1d3be4p-26, 0x1.fc0c6f7f7983p-27},
+                             {0x1.a44a536f26e99p-26, 0x1.79f987868c9bp-25, -0x1.35bda102cf5e2p-30},
+                             {-0x1.9d5d3659a21dcp-48, -0x1.37fd7fe6e67b6p-45, 0x1.ab44cf9182d0fp-32},
+                             {0x1.e8f806899b23ep-27, 0x1.9df2abe626023p-25, 0x1.800a65ef200c9p-29},
+                             {0x1.a9a8738a0710ep-26, 0x1.69a18226dfb9fp-24, 0x1.69885c5a587p-32}}};
+    Worst worst;
+    measure_all(oracle::Kind::vertex_face, {pair}, 1e-15, worst);
+    expect_close(oracle::Kind::vertex_face, "with area, narrow leaves", 1e-15, worst, 0x1p12 * u);
+    EXPECT_GT(worst.beyond, 0x1p11 * u) << "no longer the worst: another is to be looked for";
 }
 
 /// Leaves without a certificate are searched on below E_tol: what is near within E_tol alone is not reported.

@@ -220,7 +220,7 @@ bool walk_ends_at_zero(const scalar::PairPolynomials<kind>& pair, double leaf_wi
 {
     for (double end = leaf_width < 1.0 ? 0.5 : 1.0; end >= 0x1p-100; end *= 0.5) {
         const scalar::Interval i{0.0, end};
-        if (pair.apart(i) || (end <= leaf_width && pair.apart_by_area(i))) return false;
+        if (pair.apart(i) || (end <= leaf_width && portable::apart_by_area_on<kind>(pair.coefficients(), 0.0, end).value)) return false;
     }
     return true;
 }
