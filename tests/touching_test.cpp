@@ -166,7 +166,7 @@ TEST(Touching, LeavesThatAreApartHoldNoContact)
         for (const double tolerance : {0.5, 1e-2, 1e-4, 1e-6}) {
             std::size_t apart = 0;
             const SearchParameters parameters{tolerance, 1.0, false};
-            for_each_family(kind, 823, amount(200), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
+            for_each_family(kind, 823, amount(300), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
                 if (kind == oracle::Kind::vertex_face)
                     expect_no_contact<PairKind::vertex_face>(kind, pairs, parameters, family, apart);
                 else
@@ -284,7 +284,7 @@ TEST(Touching, EachLeafBeforeIsApart)
         for (const double tolerance : {0x1p-3, 0x1p-9})
             for (const double t_max : {1.0, 0.7}) {
                 const SearchParameters parameters{tolerance, t_max, false};
-                for_each_family(kind, 819, amount(100), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
+                for_each_family(kind, 819, amount(250), [&](const std::vector<oracle::Pair>& pairs, const std::string& family) {
                     if (kind == oracle::Kind::vertex_face)
                         expect_apart_before<PairKind::vertex_face>(pairs, parameters, family, seen);
                     else
