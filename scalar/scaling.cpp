@@ -16,6 +16,9 @@ namespace {
 constexpr double smallest_unscaled = 0x1p-100;
 constexpr double largest_unscaled = largest_extent;
 
+/// Within that range, with room for exponents of AxisDifferences, which are off by one.
+constexpr int smallest_exponent = -95, largest_exponent = 95;
+
 bool within_range(double extent) { return extent >= smallest_unscaled && extent <= largest_unscaled; }
 
 /// An axis of this extent over the step, and over the searched part of it, is left alone. Over a short part it may be far
@@ -83,14 +86,24 @@ RelativeMotion<double> scaled_relative_motion(const double* coordinates, double 
     if (all_unscaled(step, t_max == 1.0 ? step : extents(from_x0)))
         return origin == 0 ? from_x0 : relative_motion<double>(exchanged, 1, t_max);
 
+    // At least one axis has an extent, as all would have been left alone without.
+    const AxisDifferences to_x0[] = {{coordinates, 0}, {coordinates, 1}, {coordinates, 2}};
+    int largest = std::numeric_limits<int>::min(), smallest = std::numeric_limits<int>::max();
+    for (const AxisDifferences& axis : to_x0)
+        if (!axis.zero()) {
+            largest = std::max(largest, axis.exponent(t_max));
+            smallest = std::min(smallest, axis.exponent(t_max));
+        }
+    const bool all_fit = largest - smallest <= largest_exponent - smallest_exponent;
+    const int common = all_fit ? -((largest + smallest) / 2) : -largest;
+
     RelativeMotion<double> scaled;
     double Vector3<double>::*const component[] = {&Vector3<double>::x, &Vector3<double>::y, &Vector3<double>::z};
     for (int axis = 0; axis < 3; ++axis) {
-        const AxisDifferences to_x0{coordinates, axis}, differences{exchanged, axis};
         double start[3] = {}, end[3] = {};
-        if (!to_x0.zero()) {  // left alone if within_range, scaled to near 1 if not
-            const int exponent = to_x0.exponent(t_max);
-            differences.put(start, end, t_max, exponent >= -100 && exponent < 100 ? 0 : -exponent);
+        if (!to_x0[axis].zero()) {
+            const int exponent = to_x0[axis].exponent(t_max);
+            AxisDifferences{exchanged, axis}.put(start, end, t_max, exponent + common < smallest_exponent ? -exponent : common);
         }
         for (int i = 0; i < 3; ++i) {
             scaled.start[i].*component[axis] = start[i];

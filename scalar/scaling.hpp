@@ -1,8 +1,9 @@
 // Exact scaling of each axis by a power of two.
 //
-// Contact and its time do not change under an invertible affine map. Pairs whose extents could make
-// products overflow or underflow are mapped so that every extent is near 1; the others are left alone, so
-// that they have the same bits as in the lanes.
+// Contact and its time do not change under an invertible affine map. Pairs whose extents could make products overflow or underflow
+// are mapped: by one power of two for all axes where that brings all extents into the range, so that such pairs have the bits that they have
+// there; otherwise by one that brings the largest near 1, and axes that are too small then, near 1, too. The others are left alone,
+// so that they have the same bits as in the lanes.
 #pragma once
 
 #include <relative_motion.hpp>

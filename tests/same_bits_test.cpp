@@ -10,6 +10,7 @@
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "test_data.hpp"
+#include "thin_pairs.hpp"
 
 namespace fastccd::testing {
 namespace {
@@ -239,21 +240,50 @@ TEST(SameBits, GapThatUnderflowsWhenScaled)
             }
 }
 
+/// The same pairs with each axis multiplied by a power of two.
+std::vector<oracle::Pair> scaled(std::vector<oracle::Pair> pairs, const double (&scale)[3])
+{
+    for (auto& pair : pairs)
+        for (auto& point : pair)
+            for (std::size_t axis = 0; axis < 3; ++axis) point[axis] *= scale[axis];
+    return pairs;
+}
+
+/// Of families whose coordinates stay doubles when they are scaled so.
+TEST(SameBits, PowerOfTwoScale)
+{
+    constexpr double powers[] = {0x1p40, 0x1p-60, 0x1p900, 0x1p-500};
+    const auto expect_same_scaled = [&](oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const std::string& family) {
+        for (const double t_max : {1.0, 0.7}) {
+            Options options;
+            options.t_max = t_max;
+            const Answer expected = answer(kind, interleaved(pairs), options);
+            for (const double power : powers)
+                expect_same(expected, answer(kind, interleaved(scaled(pairs, {power, power, power})), options), family + " scaled");
+        }
+    };
+    std::vector<oracle::Pair> pairs;
+    for (const auto kind : kinds) {
+        for (const std::string& family : families()) {
+            if (family.ends_with("extreme_scale") || family.ends_with("mixed_exponent")) continue;
+            generate(family, kind, 37, amount(200), pairs);
+            expect_same_scaled(kind, pairs, family);
+        }
+        expect_same_scaled(kind, ThinPairs{kind, 37}.next(amount(200)), "thin");
+    }
+}
+
+/// Not of families whose faces or edges have hardly any area when they meet: there lengths have a say (eq. 6), hence the units of an axis.
 TEST(SameBits, PowerOfTwoScalePerAxis)
 {
+    constexpr double scales[][3] = {{0x1p-60, 0x1p30, 1.0}, {0x1p500, 0x1p-500, 0x1p-3}, {0x1p10, 1.0, 0x1p-10}};
+    std::vector<oracle::Pair> pairs;
     for (const auto kind : kinds)
-        for (const char* family : {"uniform", "simcloth", "boundary", "degenerate", "coplanar_map"}) {
-            std::vector<oracle::Pair> pairs;
+        for (const char* family : {"uniform", "simcloth", "boundary", "f32_boundary", "degenerate", "coplanar_map", "t1_contact", "f32_binarygrid"}) {
             generate(family, kind, 37, 200, pairs);
             const Answer expected = answer(kind, interleaved(pairs), {});
-            constexpr double scales[][3] = {{0x1p40, 0x1p40, 0x1p40}, {0x1p-60, 0x1p30, 1.0}, {0x1p500, 0x1p-500, 0x1p-3}};
-            for (const auto& scale : scales) {
-                auto scaled = pairs;
-                for (auto& pair : scaled)
-                    for (auto& point : pair)
-                        for (std::size_t axis = 0; axis < 3; ++axis) point[axis] *= scale[axis];
-                expect_same(expected, answer(kind, interleaved(scaled), {}), std::string(family) + " scaled");
-            }
+            for (const auto& scale : scales)
+                expect_same(expected, answer(kind, interleaved(scaled(pairs, scale)), {}), std::string(family) + " scaled");
         }
 }
 
