@@ -27,7 +27,7 @@ struct CertificateBounds {
     double cubic, quadratic, quadratic_sum, linear;
 };
 
-/// Axes on which the coordinates of a pair differ by more are scaled down by the certified search.
+/// Pairs whose coordinates differ by more along an axis are scaled down by the certified search (scalar/scaling.hpp).
 inline constexpr double largest_extent = 0x1p100;
 
 /// What screening compares with in one precision: certificates on the whole interval, on both halves, and on a part at its start; and
@@ -51,8 +51,8 @@ struct ErrorBounds {
     /// Error of a component of r_i at an end of the interval, in units of u X.
     double rho;
 
-    /// Pairs with larger extents are left to the certified search. It scales axes on which coordinates differ by more than
-    /// largest_extent down, and a gap that underflows then is no gap for it, while lanes would see it. The differences p and q
+    /// Pairs with larger extents are left to the certified search. It scales pairs down whose coordinates differ by more than
+    /// largest_extent, and a gap that underflows then is no gap for it, while lanes would see it. The differences p and q
     /// at both ends of the step are to be below: with t_max != 1 extents E bound p and r(t_max) = (1 - t_max) p + t_max q, so
     /// |q| <= 2 E / t_max; a quarter of it covers roundings.
     double largest_lane_extent;
@@ -252,7 +252,7 @@ struct ErrorBounds {
 /// whose coordinates differ by less than largest_extent. A product of two components that underflows errs by at most 2^-1075;
 /// times a third component, below 2^100, that is less than 2^-975, some twenty times over: far below u 2^-798. Interpolated
 /// components err by a few 2^-1074: far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes
-/// and go to the scalar path, which scales each axis by a power of two.
+/// and go to the scalar path, which scales axes by powers of two.
 inline constexpr double length_floor = 0x1p-266;
 /// The same for lanes of single precision, which screen pairs with extents between `smallest_extent` and `largest_extent` of
 /// ErrorBounds::screening_in_single(), 2^-30 and 2^40. Areas are 2^-80 and volumes 2^-120 at least. A product of two components that underflows

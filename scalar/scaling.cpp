@@ -16,7 +16,8 @@ namespace {
 constexpr double smallest_unscaled = 0x1p-100;
 constexpr double largest_unscaled = largest_extent;
 
-/// Within that range, with room for exponents of AxisDifferences, which are off by one.
+/// Exponents of extents within that range: exponent() is that of a bound within a factor 2 of the extent (t_max != 1), and components of
+/// r_i from x1 may be twice as large.
 constexpr int smallest_exponent = -95, largest_exponent = 95;
 
 bool within_range(double extent) { return extent >= smallest_unscaled && extent <= largest_unscaled; }
@@ -94,8 +95,10 @@ RelativeMotion<double> scaled_relative_motion(const double* coordinates, double 
             largest = std::max(largest, axis.exponent(t_max));
             smallest = std::min(smallest, axis.exponent(t_max));
         }
+    // Lanes take what is below largest_extent as it is: scaled down, a gap that they see might underflow. If all fit, `common` is not
+    // negative for them: an axis is out of the range, so some extent is below 2^-99, and none beyond 2^92.
     const bool all_fit = largest - smallest <= largest_exponent - smallest_exponent;
-    const int common = all_fit ? -((largest + smallest) / 2) : -largest;
+    const int common = all_fit ? -((largest + smallest) / 2) : largest < std::ilogb(largest_unscaled) ? 0 : -largest;
 
     RelativeMotion<double> scaled;
     double Vector3<double>::*const component[] = {&Vector3<double>::x, &Vector3<double>::y, &Vector3<double>::z};

@@ -1,9 +1,10 @@
 // Exact scaling of each axis by a power of two.
 //
-// Contact and its time do not change under an invertible affine map. Pairs whose extents could make products overflow or underflow
-// are mapped: by one power of two for all axes where that brings all extents into the range, so that such pairs have the bits that they have
-// there; otherwise by one that brings the largest near 1, and axes that are too small then, near 1, too. The others are left alone,
-// so that they have the same bits as in the lanes.
+// Contact and its time do not change under an invertible affine map. A pair with an axis whose extent could make products overflow or
+// underflow is multiplied by one power of two on all axes, if that brings all extents into the range: lengths and areas keep their
+// proportions, so the result has the bits of the pair there. If no one power does, axes within the range stay as they are and those below
+// it are brought near 1; only if the largest is beyond it, all are first scaled down by that one. No axis is scaled down that lanes would take
+// as it is (error_bound.hpp, largest_lane_extent). Other pairs are left alone, so that they have the same bits as in the lanes.
 #pragma once
 
 #include <relative_motion.hpp>

@@ -224,6 +224,9 @@ mutant 'touch: whatever contact is before' scheduler/touching_blocks.cpp 's/if \
 mutant 'time not rounded down' kernels/search_parameters.hpp 's/product \* \(1\.0 - 0x1p-52\)/product/' error_bounds_test
 mutant 'small axes not scaled' scalar/scaling.cpp 's/smallest_unscaled = 0x1p-100/smallest_unscaled = 0/' truth_test same_bits_test certificates_test
 mutant 'large axes not scaled' scalar/scaling.cpp 's/largest_unscaled = largest_extent/largest_unscaled = 1e308/' truth_test same_bits_test certificates_test
+mutant 'range: axes that lanes take scaled down' scalar/scaling.cpp 's/: largest < std::ilogb\(largest_unscaled\) \? 0 : -largest/: -largest/' same_bits_test
+mutant 'range: pairs beyond it left there' scalar/scaling.cpp 's/all_fit \? -\(\(largest \+ smallest\) \/ 2\)/all_fit ? 0/' truth_test same_bits_test
+mutant 'range: small axes as they are' scalar/scaling.cpp 's/smallest_exponent = -95/smallest_exponent = -1000/' truth_test same_bits_test certificates_test extreme_range_test
 mutant 'each axis scaled by itself' scalar/scaling.cpp 's/exponent \+ common < smallest_exponent \? -exponent : common/-exponent/' same_bits_test
 mutant 'range: gaps along subnormal axes without a floor' kernels/certificates.hpp 's/max\(extent, broadcast<L>\(extent_floor\(Lane<L>::is_single\)\)\)/extent/' extreme_range_test
 mutant 'range: short steps scaled as if they were whole' scalar/scaling.cpp 's/within_range\(step\) && within_range\(searched\)/within_range(step)/' extreme_range_test

@@ -240,6 +240,21 @@ TEST(SameBits, GapThatUnderflowsWhenScaled)
             }
 }
 
+/// A gap that would vanish if its axis were scaled down because another axis is far below the range.
+TEST(SameBits, GapThatUnderflowsIfAllAxesWereScaled)
+{
+    for (const auto kind : kinds)
+        for (const double extent : {0.9 * 0x1p60, 0x1p99, 0x1p101})
+            for (const double gap : {0x1p-1060, 0x1p-960})
+                for (const double small : {0x1p-101, 0x1p-170, 0x1p-1000}) {
+                    oracle::Pair pair{{{0, 0, 0}, {gap, -1, -small}, {gap, 1, small}, {extent, 2, 0.5 * small}}};
+                    for (std::size_t i = 0; i < 4; ++i) pair[i + 4] = pair[i];
+                    if (kind == oracle::Kind::edge_edge) pair[1][0] = pair[5][0] = 0;
+                    expect_same_on_every_isa(kind, interleaved({pair}), 0x1p-42, kind_name(kind));
+                    expect_same_on_every_isa(kind, interleaved({pair}), 0x1p-42, kind_name(kind), 0.25);
+                }
+}
+
 /// The same pairs with each axis multiplied by a power of two.
 std::vector<oracle::Pair> scaled(std::vector<oracle::Pair> pairs, const double (&scale)[3])
 {
