@@ -9,6 +9,7 @@
 #include <projected_inclusion.hpp>
 #include <records.hpp>
 #include <touching.hpp>
+#include <unscaled_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -302,9 +303,13 @@ private:
         const unsigned crossing = lanes & Lane<L>::bits(crosses);
         const unsigned contact = crossing & Lane<L>::bits(inclusion.present);
         unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
-        // The search asks for eq. 7 of the leaf, by the same text, before it reports it as one in which nothing is proven, by a look or by halving.
-        if ((undecided & crossing) != 0)
-            undecided &= ~(crossing & Lane<L>::bits(area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds)));
+        // The search asks for eq. 7 of the leaf, by the same text, before it reports it as one in which nothing is proven, by a look or by
+        // halving; of the same lengths, unless it scales axes. Where f is not zero all axes have an extent, so those of the step are
+        // unscaled if those of the searched part are, as lanes take none that are too large.
+        if ((undecided & crossing) != 0) {
+            const LaneMask<L> apart = area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds);
+            undecided &= ~(crossing & Lane<L>::bits(apart & is_unscaled(root.r, root.r)));
+        }
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
         if (undecided != 0) look_again(root, undecided);
     }

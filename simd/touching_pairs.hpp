@@ -9,24 +9,9 @@
 #include <search_coefficients.hpp>
 #include <start_in_doubt.hpp>
 #include <touching.hpp>
+#include <unscaled_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
-
-/// The search leaves the axes of a pair alone if its differences have no extent along them, or one between these (scalar/scaling.hpp);
-/// if it leaves all alone, it computes what lanes do. An inner part of that range will do here.
-inline constexpr double smallest_touching = 0x1p-90, largest_touching = 0x1p90;
-
-template <class L>
-FASTCCD_INLINE LaneMask<L> is_unscaled(const RelativeMotion<L>& step, const RelativeMotion<L>& searched)
-{
-    const Extents<L> s = extents(step), e = extents(searched);
-    const L smallest = broadcast<L>(smallest_touching), largest = broadcast<L>(largest_touching);
-    const auto along = [&](L of_step, L of_searched) FASTCCD_INLINE_LAMBDA {
-        return less_equal(of_step, broadcast<L>(0.0)) |
-               (less(smallest, min(of_step, of_searched)) & less(max(of_step, of_searched), largest));
-    };
-    return along(s.x, e.x) & along(s.y, e.y) & along(s.z, e.z);
-}
 
 /// Sets the bounds of `part` to those of `whole` and `times` its margins (meeting.hpp). A certificate by bound and margin on an interval is one by
 /// the bound on each part of it; and one by the bound on an interval is one by bound less margin on each part.
