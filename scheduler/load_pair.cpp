@@ -1,6 +1,6 @@
 #include <load_pair.hpp>
 
-#include <block_source.hpp>
+#include <pair_vertices.hpp>
 
 namespace fastccd {
 
