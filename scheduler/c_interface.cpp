@@ -57,7 +57,8 @@ int to_cpp(const fastccd_options* given, CallOptions& options)
 {
     if (given == nullptr) return FASTCCD_OK;
     fastccd_options known = to_c({});
-    if (!read_struct(*given, first_options, known) || known.threads < 0) return FASTCCD_BAD_ARGUMENT;
+    if (!read_struct(*given, first_options, known) || known.threads < 0 || known.reserved != 0 || known.reserved2 != 0)
+        return FASTCCD_BAD_ARGUMENT;
     if (!is_isa(known.isa)) return FASTCCD_ISA_UNAVAILABLE;
     options.threads = known.threads;
     options.tolerance = known.tolerance;
@@ -219,8 +220,9 @@ int of_mesh(const fastccd_mesh* mesh, int kind, const std::int32_t* pairs, std::
 
 int single(PairKind kind, const double* x0, const double* x1, const fastccd_options* given, double* toi)
 {
-    if (x0 == nullptr || x1 == nullptr || toi == nullptr) return FASTCCD_BAD_ARGUMENT;
+    if (toi == nullptr) return FASTCCD_BAD_ARGUMENT;
     *toi = std::numeric_limits<double>::quiet_NaN();
+    if (x0 == nullptr || x1 == nullptr) return FASTCCD_BAD_ARGUMENT;
     CallOptions options;
     if (const int error = to_cpp(given, options); error != FASTCCD_OK) return error;
     Point start[4], end[4];
@@ -245,7 +247,9 @@ const char* fastccd_version(void) { return FASTCCD_VERSION; }
 
 const char* fastccd_message(int error)
 {
-    if (error == FASTCCD_BAD_ARGUMENT) return "a pointer is null, a kind is unknown, the number of threads is negative, or the size of a struct is not set";
+    if (error == FASTCCD_BAD_ARGUMENT)
+        return "a pointer is null, a kind is unknown, the number of threads is negative, the size of a struct is not set, "
+               "or a reserved option is not 0";
     if (error < FASTCCD_OK || error > FASTCCD_BAD_EDGE_INDEX) return "unknown error";
     return message(static_cast<Error>(error));
 }

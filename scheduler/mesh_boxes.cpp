@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <new>
 
 #include <fastccd/aligned_doubles.hpp>
 #include <parallel_ranges.hpp>
@@ -182,7 +183,11 @@ BoxScreen MeshBoxes::screen(PairKind kind, const IndexedSource& source, std::siz
     if (set == nullptr) {
         // A box costs as much as one or two pairs save that are kept apart, and four in five are.
         if (pairs / 2 < source.vertex_count + source.primitive_count) return {};
-        set = make(kind, source);
+        try {
+            set = make(kind, source);
+        } catch (const std::bad_alloc&) {
+            // Without boxes, then.
+        }
         if (set == nullptr) return {};
         // Another thread may have made them meanwhile: waiting for it, inside a task, could be waiting for oneself.
         if (Set* other = nullptr; !kept.compare_exchange_strong(other, set)) {

@@ -102,6 +102,12 @@ TEST_P(Adapter, ToleranceIsADistance)
     double toi = -1.0;
     ASSERT_TRUE(GetParam()(oracle::Kind::vertex_face, falling, {0.0, 1.0, 1.0}, toi));
     EXPECT_LT(toi, 0.5) << "a coarse tolerance is used as such";
+    ASSERT_TRUE(GetParam()(oracle::Kind::vertex_face, falling, {0.0, infinity, 1.0}, toi));
+    EXPECT_LT(toi, 0.5);
+    // The largest displacement is beyond all doubles.
+    constexpr double b = 1e308;
+    const oracle::Pair huge{{{-b, -b, -b}, {b, b, b}, {b, b, 0}, {b, 0, 0}, {b, b, b}, {-b, -b, -b}, {-b, -b, 0}, {-b, 0, 0}}};
+    for (const double tolerance : {1e-6, 1e300, infinity}) EXPECT_TRUE(GetParam()(oracle::Kind::vertex_face, huge, {0.0, tolerance, 1.0}, toi)) << tolerance;
 }
 
 TEST_P(Adapter, ShorterStepsDownToTheStartAlone)

@@ -133,7 +133,19 @@ static void test_single_pairs(void)
     memcpy(bad, start, sizeof bad);
     bad[4] = NAN;
     EXPECT(fastccd_vertex_face_toi(bad, end, NULL, &toi) == FASTCCD_OK && isnan(toi));
-    EXPECT(fastccd_vertex_face_toi(NULL, end, NULL, &toi) == FASTCCD_BAD_ARGUMENT);
+    toi = 7.0;
+    EXPECT(fastccd_vertex_face_toi(NULL, end, NULL, &toi) == FASTCCD_BAD_ARGUMENT && isnan(toi));
+    toi = 7.0;
+    EXPECT(fastccd_edge_edge_toi(start, NULL, NULL, &toi) == FASTCCD_BAD_ARGUMENT && isnan(toi));
+    EXPECT(fastccd_vertex_face_toi(start, end, NULL, NULL) == FASTCCD_BAD_ARGUMENT);
+    fastccd_options_init(&options, sizeof options);
+    options.reserved = 1; /* what a later version may mean something by */
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_BAD_ARGUMENT && isnan(toi));
+    options.reserved = 0;
+    options.reserved2 = 1;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_BAD_ARGUMENT && isnan(toi));
+    options.reserved2 = 0;
+    EXPECT(fastccd_vertex_face_toi(start, end, &options, &toi) == FASTCCD_OK);
 }
 
 static void test_packed_pairs(void)

@@ -41,7 +41,8 @@ enum fastccd_error {
     FASTCCD_EXACT_SEPARATION = 12,       /* `exact` together with a minimum separation */
     FASTCCD_BAD_FACE_INDEX = 13,     /* a face of the mesh refers to a vertex that is not there; see fastccd_fault */
     FASTCCD_BAD_EDGE_INDEX = 14,     /* an edge of the mesh does */
-    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, threads < 0, or a struct whose size is not set */
+    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, threads < 0, a struct whose size is not set, or a
+                                        reserved option that is not 0 */
 };
 
 enum fastccd_kind {
@@ -85,6 +86,7 @@ typedef struct fastccd_mesh {
     const int32_t* edges; /* edge_count x 2 */
 } fastccd_mesh;
 
+/* One contact of a compact result. */
 typedef struct fastccd_contact {
     size_t pair;    /* index of the pair in the input */
     double toi;     /* lower bound of its first time of contact */
@@ -112,7 +114,8 @@ typedef struct fastccd_step {
     int32_t reserved;
 } fastccd_step;
 
-/* What is at fault. Written on FASTCCD_INDEX_OUT_OF_RANGE and FASTCCD_INVALID_PAIR, FASTCCD_BAD_FACE_INDEX and FASTCCD_BAD_EDGE_INDEX. */
+/* What is at fault. Written on FASTCCD_INDEX_OUT_OF_RANGE and FASTCCD_INVALID_PAIR (`index` is 0 then), FASTCCD_BAD_FACE_INDEX and
+ * FASTCCD_BAD_EDGE_INDEX; otherwise left as it was. */
 typedef struct fastccd_fault {
     size_t pair;   /* the pair; on the last two, the row of `faces` or `edges` */
     int64_t index; /* the index it holds */
@@ -136,8 +139,8 @@ FASTCCD_API int fastccd_best_isa(void);
 FASTCCD_API void fastccd_options_init(fastccd_options* options, size_t size);
 
 /* One pair: four points at t = 0 and at t = 1, x y z each. *toi: lower bound of the first time of contact in [0, t_max];
- * INFINITY: certainly apart; NAN: a coordinate is NaN or infinite, or there is an error. No threads, and no allocation unless
- * `exact`. `options`: or NULL. */
+ * INFINITY: certainly apart; NAN: a coordinate is NaN or infinite, or there is an error. The certified search in the caller's thread,
+ * whatever the instruction set; no allocation unless `exact`. `options`: or NULL. */
 FASTCCD_API int fastccd_vertex_face_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
 FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
 

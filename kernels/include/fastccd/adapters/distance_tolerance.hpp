@@ -4,12 +4,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
 
 #include <fastccd/eigen.hpp>
-#include <fastccd/pair_view.hpp>
+#include <fastccd/single_pair.hpp>
 
 namespace fastccd::adapters {
 
@@ -65,6 +66,7 @@ inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separa
         throw std::invalid_argument("fastccd: the minimum separation must be finite and at least 0");
     if (is_nan(t_max) || t_max < 0.0 || t_max > 1.0) throw std::invalid_argument("fastccd: t_max must be in [0, 1]");
     if (is_nan(distance) || distance <= 0.0) throw std::invalid_argument("fastccd: the tolerance must be positive");
+    if (!is_finite(distance)) distance = std::numeric_limits<double>::max();  // infinite over infinite would be no number
     Options options;
     options.minimum_separation = minimum_separation;
     // No coarser than by default, so that a pair a little farther apart than that at the start is let go.
