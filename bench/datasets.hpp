@@ -36,9 +36,9 @@ struct Dataset {
 /// Larger sets are cut here, at the first pairs in the order of the broad phase: 1.5 GB packed.
 inline constexpr std::size_t most_pairs = 8'000'000;
 
-/// "random" (the paper's test: every coordinate uniform in the unit cube), "generated" (a cloth on a
-/// spinning ball, made on the spot), "grids" (two sheets of one grid, made as well), and the public scenes "cloth-ball", "n-body" and "cloth-funnel" as
-/// far as their files are there.
+/// "random" (the paper's test: every coordinate uniform in the unit cube), "generated" (a cloth on a spinning ball, made on the spot),
+/// "grids" (two sheets of one grid, made as well), and the public scenes "cloth-ball", "n-body" and "cloth-funnel" as far as their files
+/// are there.
 [[nodiscard]] std::vector<std::string> available_datasets();
 [[nodiscard]] bool is_scene(const std::string& dataset);
 

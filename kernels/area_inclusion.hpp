@@ -4,10 +4,10 @@
 // If there is contact at some s with |s - c| <= delta, then at c
 //     vertex-face:  |r1 x r2| + |r2 x r3| + |r3 x r1| - |w|     <= 2 sum E,
 //     edge-edge:  | |r1 x r2| + |r1 x r3| - |r2 x r3| - |w| |   <= 2 sum E
-// in doubled areas, w = r1 x r2 + r2 x r3 + r3 x r1 that of x1 x2 x3, with E = delta C1 C2 + delta^2 C2^2 / 2 for each of the four triangles (eq. 6) and
-// C1, C2 the largest edge and the largest velocity difference. Both are bounded from above here, once for
-// all four triangles: C1 by the largest edge over both ends of the interval (an edge is a convex function
-// of time), so that the same constants serve every time c.
+// in doubled areas, w = r1 x r2 + r2 x r3 + r3 x r1 that of x1 x2 x3, with E = delta C1 C2 + delta^2 C2^2 / 2 for each of the four
+// triangles (eq. 6) and C1, C2 the largest edge and the largest velocity difference. Both are bounded from above here, once for all four
+// triangles: C1 by the largest edge over both ends of the interval (an edge is a convex function of time), so that the same constants
+// serve every time c.
 #pragma once
 
 #include <certificates.hpp>

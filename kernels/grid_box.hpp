@@ -4,9 +4,9 @@
 // Along each axis the mesh, over both ends of the step, spans [centre - H, centre + H], and a coordinate x lies in the cell
 //     q = floor((x - centre) * cells / H),    cells = 16000.
 // The floor is taken by truncation after 2^15 is added (mesh_boxes.cpp). Difference, factor, product and that sum are rounded: in
-// units of a cell the computed argument errs by less than 2 u 2^16 < 2^-35, so x lies between q - 2^-35 and q + 1 + 2^-35. The box of a primitive at one end of the
-// step reaches from the least q to the largest q + 1 of its vertices. If, along one axis and in the same order at both ends,
-// the first box ends below where the second begins,
+// units of a cell the computed argument errs by less than 2 u 2^16 < 2^-35, so x lies between q - 2^-35 and q + 1 + 2^-35. The box of a
+// primitive at one end of the step reaches from the least q to the largest q + 1 of its vertices. If, along one axis and in the same
+// order at both ends, the first box ends below where the second begins,
 //     high_a + k < low_b,    k = ceil(d * cells / H),
 // then, all being integers, the primitives are farther apart than k + 1 - 2^-34 cells: farther than d by nearly a cell at both
 // ends, and so throughout, because coordinates are linear in time. A cell is 2^-14 H, the pair's extent at most 2 H: the gap

@@ -1,9 +1,10 @@
 // What a lane type must provide, and the lane type `double`.
 //
 // Every kernel is one template on a lane type L: `double` (one pair) or `xsimd::batch<double, A>`
-// (several pairs side by side); the certificates also `xsimd::batch<float, A>`, twice as many. Only + - * / and square root, all correctly rounded by IEEE 754,
-// comparisons, operations on bits of the sign and the exponent, and the min / max below may decide a result: that is what makes
-// the results the same bits for every L. Nothing is contracted (the build switches that off): no product loses its rounding.
+// (several pairs side by side); the certificates also `xsimd::batch<float, A>`, twice as many. Only + - * / and square root, all
+// correctly rounded by IEEE 754, comparisons, operations on bits of the sign and the exponent, and the min / max below may decide a
+// result: that is what makes the results the same bits for every L. Nothing is contracted (the build switches that off): no product
+// loses its rounding.
 //
 // All kernels live in a namespace of their own per instruction set: two translation units compiled
 // with different instruction sets must never emit the same inline function, because the linker

@@ -8,8 +8,9 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// The motion as it is searched, with axes multiplied by the powers of two that bring their extents to [1/2, 1). They are 0 or near the range that
-/// scalar/scaling.hpp leaves alone, 2^-100 to 2^100, so no power of two leaves that of doubles. Whether a pair is apart does not change, and answers do not depend on the units of an axis.
+/// The motion as it is searched, with axes multiplied by the powers of two that bring their extents to [1/2, 1). They are 0 or near the
+/// range that scalar/scaling.hpp leaves alone, 2^-100 to 2^100, so no power of two leaves that of doubles. Whether a pair is apart does
+/// not change, and what is found along directions does not depend on the units of an axis.
 template <class L>
 FASTCCD_INLINE RelativeMotion<L> with_equal_extents(const RelativeMotion<L>& r)
 {

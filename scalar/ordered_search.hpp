@@ -201,7 +201,8 @@ private:
     const PairCoefficients& pair;
     const SearchParameters& parameters;
     IntervalKernel kernel{};
-    /// Found when lanes are asked for the first time: for pairs that rest on one another, which are told by one look, it would take longer than all else.
+    /// Found when lanes are asked for the first time: for pairs that rest on one another, which are told by one look, it would take
+    /// longer than all else.
     std::optional<ExpectedContact> expected;
     double tried = -1.0;                       ///< Where a meeting was looked for last.
     double meeting = ExpectedContact::nowhere; ///< A time of which meeting.hpp says that no interval around it has a certificate.

@@ -53,7 +53,10 @@ public:
     [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair, Between<double>{i.a, i.b}).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair, s).value; }
     [[nodiscard]] bool zero_at_start() const { return FASTCCD_KERNEL_NAMESPACE::zero_at_start(pair).value; }
-    [[nodiscard]] bool in_contact_at_start(double leaf_width) const { return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair, leaf_width).value; }
+    [[nodiscard]] bool in_contact_at_start(double leaf_width) const
+    {
+        return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair, leaf_width).value;
+    }
     [[nodiscard]] bool well_shaped_at_start() const { return FASTCCD_KERNEL_NAMESPACE::well_shaped_at_start<kind>(pair).value; }
     [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair, s).value; }
 

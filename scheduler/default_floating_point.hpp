@@ -6,9 +6,9 @@
 namespace fastccd {
 
 /// While it lives, this thread rounds to nearest, keeps subnormal numbers, and does not trap; afterwards it does again what it did
-/// before, and of what happened meanwhile no exception is left raised. A caller may do otherwise without knowing: a program, or a library that it loads, that was linked with -ffast-math
-/// flushes subnormal numbers to zero; interval arithmetic rounds upwards; some trap divisions by zero, of which lanes do many for
-/// nothing. Threads of oneTBB take it over from the one that calls (parallel_ranges.hpp).
+/// before, and of what happened meanwhile no exception is left raised. A caller may do otherwise without knowing: a program, or a library
+/// that it loads, that was linked with -ffast-math flushes subnormal numbers to zero; interval arithmetic rounds upwards; some trap
+/// divisions by zero, of which lanes do many for nothing. Threads of oneTBB take it over from the one that calls (parallel_ranges.hpp).
 class DefaultFloatingPoint {
 public:
     DefaultFloatingPoint() noexcept;

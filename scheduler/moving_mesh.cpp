@@ -54,7 +54,8 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_, Error::bad_edge_index);
     if (!status_.ok() || vertex_count_ == 0) return;
 
-    if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / vertex_record_size) records_ = allocate_aligned(vertex_count_ * vertex_record_size);
+    if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / vertex_record_size)
+        records_ = allocate_aligned(vertex_count_ * vertex_record_size);
     boxes_.reset(new (std::nothrow) MeshBoxes);
     status_ = records_ == nullptr || boxes_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
         copy_positions(start, end, records_.get());

@@ -286,7 +286,8 @@ struct BatchTraits<xsimd::avx512bw> : WideBoxes {
     static FASTCCD_INLINE __m512d widened_high(__m512 x) { return _mm512_maskz_cvtps_pd(0xff, _mm512_maskz_extractf32x8_ps(0xff, x, 1)); }
     static FASTCCD_INLINE __m512 narrowed(__m512d low, __m512d high)
     {
-        return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_castps_pd(_mm512_maskz_cvtpd_ps(0xff, low))), _mm256_castps_pd(_mm512_maskz_cvtpd_ps(0xff, high)), 1));
+        const __m256d lower = _mm256_castps_pd(_mm512_maskz_cvtpd_ps(0xff, low)), upper = _mm256_castps_pd(_mm512_maskz_cvtpd_ps(0xff, high));
+        return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castpd256_pd512(lower), upper, 1));
     }
     static FASTCCD_INLINE __m512d min(__m512d a, __m512d b) { return _mm512_min_pd(a, b); }
     static FASTCCD_INLINE __m512d max(__m512d a, __m512d b) { return _mm512_max_pd(a, b); }

@@ -28,8 +28,8 @@
 //
 // What lanes conclude is what the certified search (scalar/certified_search.hpp) would conclude:
 // - "apart" is concluded only with margins under which the search certifies every leaf: certificates and
-//   sign tests cover [0, 1] by intervals that overlap by at least one leaf, or by its halves or quarters,
-//   which no leaf straddles (see error_bound.hpp);
+//   sign tests cover [0, 1] by intervals that overlap by at least one leaf, or by its halves or quarters, which no leaf straddles
+//   (see error_bound.hpp); where the whole step is one leaf, the search halves it there (scalar/leaf_search.hpp);
 // - "contact in leaf j" is concluded only from a proof (a strict sign change of the cubic over the leaf and
 //   strict inclusion throughout it), so that no certificate of absence can hold there, together with
 //   "apart" for everything before it;

@@ -45,7 +45,7 @@ void refuse_other_frames(const ClothBall& scene, const std::filesystem::path& ou
         } catch (const InputError&) {
             // No mesh that can be read: not ours.
         }
-        if (!same) throw InputError(path, "is there already, and is not a frame of this scene; name an empty folder");
+        if (!same) throw InputError(path, "is there already, and is not this frame of a scene of this size and number of frames; name an empty folder");
         check_interrupt();
     }
 }

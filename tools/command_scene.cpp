@@ -15,7 +15,7 @@ namespace fastccd::tools {
 
 void add_scene_command(CLI::App& app)
 {
-    CLI::App* const command = app.add_subcommand("scene", "Answer all that may touch in the frames of a moving mesh");
+    CLI::App* const command = app.add_subcommand("scene", "Answer all that may touch in the frames of a moving mesh, but for pairs that share a vertex");
     const auto options = std::make_shared<SceneOptions>();
     command
         ->add_option("FRAME", options->frames,

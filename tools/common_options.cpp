@@ -113,8 +113,8 @@ void add_separation_options(CLI::App& command, CommonOptions& options)
             double value = 0;
             const std::string digits = text.substr(0, text.find_first_of("eEpP"));
             const bool zero = CLI::detail::lexical_cast(text, value) && value == 0;
-            return zero && digits.find_first_of("123456789") != std::string::npos ? fmt::format("'{}' is too small for a double, and would count as 0", text)
-                                                                                    : std::string{};
+            if (!zero || digits.find_first_of("123456789") == std::string::npos) return std::string{};
+            return fmt::format("'{}' is too small for a double, and would count as 0", text);
         },
         std::string{}};
     command

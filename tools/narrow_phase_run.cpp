@@ -27,7 +27,8 @@ void throw_unless_ok(const Status& status)
     if (status.ok()) return;
     if (status.error == Error::bad_isa_environment) {
         const char* const named = std::getenv("FASTCCD_ISA");
-        throw CLI::ValidationError(fmt::format("{}: '{}'; available here: {}", message(status.error), named == nullptr ? "" : named, available_isas()),
+        const std::string isa = named == nullptr ? "" : named;
+        throw CLI::ValidationError(fmt::format("{}: '{}'; available here: {}", message(status.error), isa, available_isas()),
                                    CLI::ExitCodes::ValidationError);
     }
     if (status.error == Error::exact_unavailable) throw CLI::ValidationError("--exact", message(status.error));

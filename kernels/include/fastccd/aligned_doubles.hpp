@@ -9,14 +9,16 @@
 
 namespace fastccd {
 
+/// Deleter of memory of this alignment, in bytes.
 struct ReleaseAligned {
     std::align_val_t alignment{64};
     void operator()(double* p) const noexcept { ::operator delete(p, alignment); }
 };
 using AlignedDoubles = std::unique_ptr<double[], ReleaseAligned>;
 
-/// Null if there is not that much memory. Not initialised. Aligned to 64 bytes: a cache line, a register of AVX-512. From 4 MiB on aligned to 2 MiB, and the system
-/// is asked for pages of that size: a buffer streamed once in pages of 4 KiB has an address to translate every 21 pairs.
+/// `count` doubles, not initialised; null if there is not that much memory. Aligned to 64 bytes: a cache line, a register of AVX-512. From
+/// 4 MiB on aligned to 2 MiB, and the system is asked for pages of that size: a buffer streamed once in pages of 4 KiB has an address to
+/// translate every 21 pairs.
 [[nodiscard]] FASTCCD_API AlignedDoubles allocate_aligned(std::size_t count) noexcept;
 
 }  // namespace fastccd

@@ -30,7 +30,7 @@ inline Point point(const Eigen::Ref<const Eigen::Vector3d>& x) { return {x[0], x
 }  // namespace eigen_detail
 
 /// Positions of n vertices, an n x 3 matrix of double or float in either storage order, or a block of one. A matrix with
-/// another number of columns gives an empty view without data: MovingMesh reports wrong_size.
+/// another number of columns gives a view of as many rows without data: MovingMesh reports wrong_size.
 template <class Matrix>
 [[nodiscard]] PositionView positions(const Eigen::DenseBase<Matrix>& matrix)
 {

@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,10 @@
 #include <fastccd/version.h>
 
 namespace fastccd {
+
+// Errors of all functions: bad_tolerance, bad_t_max, bad_minimum_separation, bad_distance_tolerance, exact_separation, exact_unavailable,
+// isa_unavailable, bad_isa_environment, wrong_size and out_of_memory; with a mesh those of MovingMesh::status() and index_out_of_range, too;
+// collision_free_step: invalid_pair, too.
 
 /// toi[i]: lower bound of the first time of contact of pair i in [0, t_max]; +infinity: certainly
 /// apart throughout; NaN: a coordinate of the pair is NaN or infinite. `toi` has one element per pair.

@@ -1,10 +1,10 @@
 // Pairs given as indices into a mesh that moves: what simulators hold.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <new>
 #include <type_traits>
 #include <utility>
 
@@ -82,7 +82,7 @@ struct IndexView {
     const std::int32_t* data = nullptr;
     std::size_t size = 0;            ///< Rows.
     std::ptrdiff_t row_stride = 0;     ///< Elements from a row to the next,
-    std::ptrdiff_t column_stride = 0;  ///< and within a row; neither may be 0.
+    std::ptrdiff_t column_stride = 0;  ///< and within a row; neither may be 0 where there is more than one.
 
     static IndexView rows(const std::int32_t* data, std::size_t n, int columns) { return {data, n, columns, 1}; }
     static IndexView columns(const std::int32_t* data, std::size_t n)
@@ -93,6 +93,7 @@ struct IndexView {
 
 class MeshBoxes;
 
+/// Deleter of what only the library knows.
 struct ReleaseBoxes {
     FASTCCD_API void operator()(MeshBoxes* boxes) const noexcept;
 };

@@ -25,6 +25,7 @@ enum class Isa : std::uint8_t {
     neon,       ///< 2 pairs at a time (arm64).
 };
 
+/// What a call asks for; the defaults are those of all functions.
 struct Options {
     /// E_tol: width of the time interval, in units of the step (t in [0, 1]), within which the first contact is located if
     /// it is a regular one, at which the primitives cross beyond rounding. Where they only touch, toi may be earlier, by as long
@@ -43,8 +44,8 @@ struct Options {
     /// coordinates' exponents spread over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
     bool exact = false;
     /// d: with d > 0, contact is a distance of at most d of the two primitives, and toi a lower bound of the first time at
-    /// which they are as close; pairs not certainly farther apart than d at the start have toi 0 (Contact::at_start), all others in contact a positive one
-    /// (or 0, as if at the start, if that time is below 2^-1071).
+    /// which they are as close; pairs not certainly farther apart than d at the start have toi 0 (Contact::at_start), all others in
+    /// contact a positive one (or 0, as if at the start, if that time is below 2^-1071).
     /// Finite, in units of the coordinates. Not together with `exact`; contact roots are not counted.
     double minimum_separation = 0.0;
     /// With minimum_separation d: a pair counts as in contact once its distance is at most (1 + distance_tolerance) d
@@ -81,6 +82,7 @@ struct Summary {
     Isa isa = Isa::automatic;      ///< Kernels that ran.
 };
 
+/// What can go wrong. `pair` is Status::pair.
 enum class Error : std::uint8_t {
     none,
     bad_tolerance,         ///< tolerance is not a positive finite number.

@@ -40,8 +40,10 @@ public:
         std::memset(data_.get(), 0, count * sizeof(double));
     }
 
+    /// Pairs; the last block may have fewer than 8.
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     [[nodiscard]] std::size_t block_count() const noexcept { return (size_ + block_pairs - 1) / block_pairs; }
+    /// block_count() x 24 x 8; null without pairs.
     [[nodiscard]] double* data() noexcept { return data_.get(); }
     [[nodiscard]] const double* data() const noexcept { return data_.get(); }
 
@@ -55,6 +57,7 @@ public:
         for (std::size_t c = 0; c < pair_coordinates; ++c) at(i, c) = coordinates[c];
     }
 
+    /// Of all pairs, as long as this buffer lives and is not moved from.
     [[nodiscard]] PairView view() const noexcept { return PairView::blocked(data_.get(), size_); }
 
 private:

@@ -13,6 +13,7 @@ namespace fastccd {
 /// x y z.
 using Point = std::array<double, 3>;
 
+/// The answer for one pair.
 struct PairToi {
     /// As in the dense answer: lower bound of the first time of contact in [0, t_max]; +infinity: certainly apart; NaN: a
     /// coordinate is NaN or infinite, or there is an error.
