@@ -154,43 +154,43 @@ BinaryForm restricted(const BinaryForm& f, const DyadicPart& part)
 
 void AlgebraicTime::halve()
 {
-    const DyadicPart first = first_half(where), second = second_half(where);
-    const BinaryForm in_first = restricted(*form, first);
+    const DyadicPart first = first_half(where_), second = second_half(where_);
+    const BinaryForm in_first = restricted(*form_, first);
     if (in_first.at_end() == 0) {
-        form.reset();
-        where = second;
+        form_.reset();
+        where_ = second;
     } else {
-        where = in_first.at_start() == in_first.at_end() ? second : first;
+        where_ = in_first.at_start() == in_first.at_end() ? second : first;
     }
 }
 
 int AlgebraicTime::sign(const BinaryForm& q)
 {
     if (q.is_zero()) return 0;
-    if (form) {
+    if (form_) {
         // A common root inside the part can only be this time, and is simple: the common divisor changes sign.
-        const Coefficients common = greatest_common_divisor(form->coefficients, q.coefficients);
+        const Coefficients common = greatest_common_divisor(form_->coefficients, q.coefficients);
         if (common.size() > 1) {
-            const BinaryForm here = restricted({common}, where);
+            const BinaryForm here = restricted({common}, where_);
             if (here.at_start() != here.at_end()) return 0;
         }
     }
-    while (form) {
-        const BinaryForm here = restricted(q, where);
+    while (form_) {
+        const BinaryForm here = restricted(q, where_);
         if (here.variations() == 0) break;
         halve();
     }
-    const BinaryForm here = restricted(q, where);
-    if (!form) return here.at_start();
+    const BinaryForm here = restricted(q, where_);
+    if (!form_) return here.at_start();
     // No variation: all coefficients that are not zero have the sign that q has inside.
     return sgn(*std::ranges::find_if(here.coefficients, [](const mpz_class& c) { return c != 0; }));
 }
 
 mpz_class AlgebraicTime::floor_times_two_to(unsigned depth)
 {
-    while (form && where.depth < depth) halve();
-    if (where.depth >= depth) return where.index >> (where.depth - depth);
-    return where.index << (depth - where.depth);
+    while (form_ && where_.depth < depth) halve();
+    if (where_.depth >= depth) return where_.index >> (where_.depth - depth);
+    return where_.index << (depth - where_.depth);
 }
 
 std::vector<AlgebraicTime> roots(const BinaryForm& f)

@@ -42,19 +42,19 @@ public:
     /// `f`, without multiple roots, has exactly one root inside the part and none at its ends.
     static AlgebraicTime inside(BinaryForm f, DyadicPart part) { return AlgebraicTime{std::move(f), std::move(part)}; }
 
-    [[nodiscard]] bool is_start() const { return !form && where.index == 0; }
+    [[nodiscard]] bool is_start() const { return !form_ && where_.index == 0; }
     /// Sign of q there.
     [[nodiscard]] int sign(const BinaryForm& q);
     /// Largest k with k / 2^depth <= this time.
     [[nodiscard]] mpz_class floor_times_two_to(unsigned depth);
 
 private:
-    AlgebraicTime(std::optional<BinaryForm> f, DyadicPart part) : form{std::move(f)}, where{std::move(part)} {}
+    AlgebraicTime(std::optional<BinaryForm> form, DyadicPart where) : form_{std::move(form)}, where_{std::move(where)} {}
 
     void halve();
 
-    std::optional<BinaryForm> form;  ///< None: the time is where.index / 2^where.depth.
-    DyadicPart where;
+    std::optional<BinaryForm> form_;  ///< None: the time is where_.index / 2^where_.depth.
+    DyadicPart where_;
 };
 
 /// The roots of `f`, which is not zero, in [0, 1], in increasing order, each once.

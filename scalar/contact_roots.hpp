@@ -16,8 +16,8 @@ namespace fastccd::scalar {
 template <PairKind kind>
 class RootCounter {
 public:
-    RootCounter(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters)
-        : pair{polynomials}, leaf_width{std::min(search_parameters.leaf_width, widest_leaf)}, leaves{polynomials, search_parameters}
+    RootCounter(const PairPolynomials<kind>& pair, const SearchParameters& parameters)
+        : pair_{pair}, leaf_width_{std::min(parameters.leaf_width, widest_leaf)}, leaves_{pair, parameters}
     {
     }
 
@@ -28,39 +28,39 @@ public:
         stack.push({0.0, 1.0});
         while (!stack.empty()) {
             // One cap for these intervals and for the parts of leaves together.
-            leaves.count_interval();
-            if (leaves.intervals() > most_intervals) return 0;
+            leaves_.count_interval();
+            if (leaves_.intervals() > most_intervals) return 0;
             const Interval i = stack.pop();
-            const Cubic<double> f = pair.coplanarity(i);
+            const Cubic<double> f = pair_.coplanarity(i);
             const double width = i.b - i.a;
-            if (width < 1.0 && pair.apart(i)) {
+            if (width < 1.0 && pair_.apart(i)) {
                 see_sign(f.c0, i.a);
-                if (open) look_behind_cluster(i);
-            } else if (one_variation(f) && pair.included(i)) {
+                if (open_) look_behind_cluster(i);
+            } else if (one_variation(f) && pair_.included(i)) {
                 see_sign(f.c0, i.a);
-                ++odd;
-            } else if (width > leaf_width && !(flat(f) && width <= widest_flat)) {
+                ++odd_;
+            } else if (width > leaf_width_ && !(flat(f) && width <= widest_flat)) {
                 stack.push_halves(i);
                 continue;
-            } else if (width <= leaf_width && leaves.contact_in_leaf(i) == leaves.none) {
+            } else if (width <= leaf_width_ && leaves_.contact_in_leaf(i) == leaves_.none) {
                 see_sign(f.c0, i.a);
-            } else if (!open) {
+            } else if (!open_) {
                 see_sign(f.c0, i.a);
                 look_ahead_of_cluster(i.a);
-                open = true;
-                before = last_sign;
+                open_ = true;
+                before_ = last_sign_;
             }
             see_sign(f.c3, i.b);
         }
-        if (open) close_cluster(0);
+        if (open_) close_cluster(0);
         // A cubic has three roots: beside two across which its sign changes there is no double one, and of clusters that look like
         // double roots at most one is. (Odd ones are three at most as well, but for those at the ends of the step.)
-        const unsigned roots = odd + (tangential && odd < 2 ? 2 : 0);
-        return countable && roots <= 3 ? static_cast<std::uint8_t>(roots) : std::uint8_t{0};
+        const unsigned roots = odd_ + (tangential_ && odd_ < 2 ? 2 : 0);
+        return countable_ && roots <= 3 ? static_cast<std::uint8_t>(roots) : std::uint8_t{0};
     }
 
     /// Intervals examined.
-    [[nodiscard]] unsigned intervals() const { return leaves.intervals(); }
+    [[nodiscard]] unsigned intervals() const { return leaves_.intervals(); }
 
 private:
     /// An interval on which the cubic vanishes within rounding is halved down to this width only: its roots
@@ -72,7 +72,7 @@ private:
 
     [[nodiscard]] int sign(double value) const
     {
-        return value > pair.cubic_bound() ? 1 : value < -pair.cubic_bound() ? -1 : 0;
+        return value > pair_.cubic_bound() ? 1 : value < -pair_.cubic_bound() ? -1 : 0;
     }
 
     /// Certainly exactly one sign variation: opposite ends, and the inner two not a further one and back.
@@ -92,49 +92,49 @@ private:
     void see_sign(double value, double time)
     {
         if (sign(value) == 0) return;
-        last_sign = sign(value);
-        last_time = time;
-        if (open) close_cluster(last_sign);
+        last_sign_ = sign(value);
+        last_time_ = time;
+        if (open_) close_cluster(last_sign_);
     }
 
     /// What is apart may be long, and have roots without contact: beside a cluster its sign is that of the nearest time at which it is
     /// certain, at distances of a leaf and of twice as much each time after that. Here of the interval after one, `apart`.
     void look_behind_cluster(Interval apart)
     {
-        for (double distance = leaf_width; open && distance < apart.width(); distance *= 2) look_at(apart.a + distance);
+        for (double distance = leaf_width_; open_ && distance < apart.width(); distance *= 2) look_at(apart.a + distance);
     }
     /// Here before one that begins at `start`.
     void look_ahead_of_cluster(double start)
     {
-        const double known = last_time;
-        for (double distance = leaf_width; last_time == known && start - distance > known; distance *= 2) look_at(start - distance);
+        const double known = last_time_;
+        for (double distance = leaf_width_; last_time_ == known && start - distance > known; distance *= 2) look_at(start - distance);
     }
     void look_at(double time)
     {
-        leaves.count_interval();
-        see_sign(pair.coplanarity({time, time}).c0, time);
+        leaves_.count_interval();
+        see_sign(pair_.coplanarity({time, time}).c0, time);
     }
 
     void close_cluster(int after)
     {
-        open = false;
-        if (before == 0 && after == 0) countable = false;
-        if (before != 0 && before == after)
-            tangential = true;
+        open_ = false;
+        if (before_ == 0 && after == 0) countable_ = false;
+        if (before_ != 0 && before_ == after)
+            tangential_ = true;
         else
-            ++odd;
+            ++odd_;
     }
 
-    const PairPolynomials<kind>& pair;
-    double leaf_width;
-    LeafSearch<kind> leaves;
-    bool open = false;
-    bool countable = true;
-    int before = 0;          ///< Sign of the cubic before the open cluster; 0 if not certain.
-    int last_sign = 0;       ///< Its last certain sign,
-    double last_time = 0.0;  ///< and when.
-    unsigned odd = 0;        ///< Roots across which the sign changes, or that lie at an end of the step.
-    bool tangential = false;
+    const PairPolynomials<kind>& pair_;
+    double leaf_width_;
+    LeafSearch<kind> leaves_;
+    bool open_ = false;
+    bool countable_ = true;
+    int before_ = 0;          ///< Sign of the cubic before the open cluster; 0 if not certain.
+    int last_sign_ = 0;       ///< Its last certain sign,
+    double last_time_ = 0.0;  ///< and when.
+    unsigned odd_ = 0;        ///< Roots across which the sign changes, or that lie at an end of the step.
+    bool tangential_ = false;
 };
 
 }  // namespace fastccd::scalar

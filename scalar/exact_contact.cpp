@@ -73,9 +73,9 @@ std::array<MovingPoint, 4> integer_motion(const double* coordinates, double t_ma
 class MovingTriangle {
 public:
     MovingTriangle(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c)
-        : volume{dot(a, cross(b, c))}, normals{cross(a, b), cross(b, c), cross(c, a)}, products{dot(a, b), dot(b, c), dot(c, a)}
+        : volume{dot(a, cross(b, c))}, normals_{cross(a, b), cross(b, c), cross(c, a)}, products_{dot(a, b), dot(b, c), dot(c, a)}
     {
-        for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = normals[0][axis] + normals[1][axis] + normals[2][axis];
+        for (std::size_t axis = 0; axis < 3; ++axis) sum_[axis] = normals_[0][axis] + normals_[1][axis] + normals_[2][axis];
     }
 
     /// Whether the origin, in the triangle's plane at this time, is in the triangle.
@@ -84,15 +84,15 @@ public:
         // In a plane through the origin all four normals are parallel, and the components of the first three, divided by
         // that of the sum, are the origin's barycentric coordinates.
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const int side = time.sign(sum[axis]);
+            const int side = time.sign(sum_[axis]);
             if (side != 0)
-                return std::ranges::all_of(normals, [&](const auto& n) { return time.sign(n[axis]) * side >= 0; });
+                return std::ranges::all_of(normals_, [&](const auto& n) { return time.sign(n[axis]) * side >= 0; });
         }
         // A flat triangle is the union of its sides. The origin is on the side A B if A and B are parallel and do not point
         // the same way.
         for (std::size_t side = 0; side < 3; ++side) {
-            const MovingPoint& n = normals[side];
-            if (time.sign(n[0]) == 0 && time.sign(n[1]) == 0 && time.sign(n[2]) == 0 && time.sign(products[side]) <= 0)
+            const MovingPoint& n = normals_[side];
+            if (time.sign(n[0]) == 0 && time.sign(n[1]) == 0 && time.sign(n[2]) == 0 && time.sign(products_[side]) <= 0)
                 return true;
         }
         return false;
@@ -105,16 +105,16 @@ public:
     void for_each_quadratic(Visit visit) const
     {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (const MovingPoint& n : normals) visit(n[axis]);
-            visit(sum[axis]);
+            for (const MovingPoint& n : normals_) visit(n[axis]);
+            visit(sum_[axis]);
         }
-        for (const BinaryForm& product : products) visit(product);
+        for (const BinaryForm& product : products_) visit(product);
     }
 
 private:
-    std::array<MovingPoint, 3> normals;
-    std::array<BinaryForm, 3> products;
-    MovingPoint sum;
+    std::array<MovingPoint, 3> normals_;
+    std::array<BinaryForm, 3> products_;
+    MovingPoint sum_;
 };
 
 std::vector<MovingTriangle> difference_triangles(PairKind kind, const std::array<MovingPoint, 4>& x)

@@ -31,26 +31,26 @@ public:
     FollowingDirection(const RelativeMotion<double>& motion, double a, double b)
     {
         for (int i = 0; i < 3; ++i) {
-            r[i] = {position(motion, i, a), position(motion, i, b)};
-            middle[i] = scaled(add(r[i].start, r[i].end), 0.5);
+            r_[i] = {position(motion, i, a), position(motion, i, b)};
+            middle_[i] = scaled(add(r_[i].start, r_[i].end), 0.5);
         }
         if constexpr (kind == PairKind::vertex_face) {
-            const Linear side[3] = {r[1] - r[0], r[2] - r[1], r[0] - r[2]};
+            const Linear side[3] = {r_[1] - r_[0], r_[2] - r_[1], r_[0] - r_[2]};
             consider(elevated(cross_product(side[0], side[1])));
             for (int i = 0; i < 3; ++i) {
-                consider(perpendicular(side[i], r[i]));
-                consider(elevated(r[i]));
+                consider(perpendicular(side[i], r_[i]));
+                consider(elevated(r_[i]));
             }
         } else {
-            const Linear first = r[0], second = r[2] - r[1];
+            const Linear first = r_[0], second = r_[2] - r_[1];
             consider(elevated(cross_product(first, second)));
             for (int i = 1; i < 3; ++i) {
-                consider(perpendicular(first, r[i]));
-                consider(elevated(r[i]));
-                consider(elevated(r[i] - first));
+                consider(perpendicular(first, r_[i]));
+                consider(elevated(r_[i]));
+                consider(elevated(r_[i] - first));
             }
-            consider(perpendicular(second, r[1]));
-            consider(perpendicular(second, r[1] - first));
+            consider(perpendicular(second, r_[1]));
+            consider(perpendicular(second, r_[1] - first));
         }
     }
 
@@ -59,7 +59,7 @@ public:
     {
         double threshold[4];
         for (int i = 0; i < 4; ++i) {
-            const Vector3<double>& v = n[i];
+            const Vector3<double>& v = n_[i];
             const double spread = (std::abs(v.x) * extents.x + std::abs(v.y) * extents.y) + std::abs(v.z) * extents.z;
             threshold[i] = (parameters.threshold * length(v) + bounds.height_following(kind) * spread) + separation_floor;
         }
@@ -88,7 +88,7 @@ public:
     void visit_heights(Visit visit) const
     {
         for_each_height<kind>(
-            [&](int i) { return times_linear([&](int k, int end) { return dot(n[k], end == 0 ? r[i].start : r[i].end); }); }, visit);
+            [&](int i) { return times_linear([&](int k, int end) { return dot(n_[k], end == 0 ? r_[i].start : r_[i].end); }); }, visit);
     }
 
     /// Of a cubic n times a linear r: ((4 - k) n_k r_0 + k n_(k-1) r_1) / 4; product(i, end): n_i r_end.
@@ -100,7 +100,7 @@ public:
     }
 
     /// n_i; all 0 if no vector shows that the primitives are apart at the middle.
-    [[nodiscard]] const Vector3<double>& coefficient(int i) const { return n[i]; }
+    [[nodiscard]] const Vector3<double>& coefficient(int i) const { return n_[i]; }
 
 private:
     /// Vectors over [a, b], in Bernstein form: linear, cubic.
@@ -145,17 +145,17 @@ private:
     void consider(const Cubic& v)
     {
         const Vector3<double> at_middle = scaled(add(add(v.n[0], v.n[3]), scaled(add(v.n[1], v.n[2]), 3.0)), 0.125);
-        const Gaps<double> gap = gaps<kind>(at_middle, middle);
+        const Gaps<double> gap = gaps<kind>(at_middle, middle_);
         const double distance = std::max(gap.along, gap.against) / length(at_middle);
-        if (!(largest_distance < distance)) return;
-        largest_distance = distance;
-        for (int i = 0; i < 4; ++i) n[i] = gap.along < gap.against ? subtract({0.0, 0.0, 0.0}, v.n[i]) : v.n[i];
+        if (!(largest_distance_ < distance)) return;
+        largest_distance_ = distance;
+        for (int i = 0; i < 4; ++i) n_[i] = gap.along < gap.against ? subtract({0.0, 0.0, 0.0}, v.n[i]) : v.n[i];
     }
 
-    Linear r[3];
-    Vector3<double> middle[3];
-    Vector3<double> n[4]{};
-    double largest_distance = 0.0;
+    Linear r_[3];
+    Vector3<double> middle_[3];
+    Vector3<double> n_[4]{};
+    double largest_distance_ = 0.0;
 };
 
 }  // namespace fastccd::scalar

@@ -17,9 +17,8 @@ public:
     static constexpr double none = std::numeric_limits<double>::infinity();
 
     /// `lanes`: if there are any, several intervals are looked at in one go, with the same outcome.
-    LeafSearch(const PairPolynomials<kind>& polynomials, const SearchParameters& search_parameters,
-               const IntervalKernel* lanes = nullptr)
-        : pair{polynomials}, parameters{search_parameters}, kernel{lanes}, search{polynomials.coefficients(), search_parameters, lanes}
+    LeafSearch(const PairPolynomials<kind>& pair, const SearchParameters& parameters, const IntervalKernel* kernel = nullptr)
+        : pair_{pair}, parameters_{parameters}, kernel_{kernel}, search_{pair.coefficients(), parameters, kernel}
     {
     }
 
@@ -27,29 +26,29 @@ public:
     double first_contact()
     {
         const Interval whole{0.0, 1.0};
-        const auto is_leaf = [&](Interval i) { return i.width() <= parameters.leaf_width; };
-        search.intervals = 1;
-        if (pair.in_contact_at_start(parameters.leaf_width)) {
-            leaf_of_answer = {0.0, parameters.leaf_width};
-            if (pair.well_shaped_at_start()) touch = 0.0;
+        const auto is_leaf = [&](Interval i) { return i.width() <= parameters_.leaf_width; };
+        search_.intervals = 1;
+        if (pair_.in_contact_at_start(parameters_.leaf_width)) {
+            leaf_of_answer_ = {0.0, parameters_.leaf_width};
+            if (pair_.well_shaped_at_start()) touch_ = 0.0;
             return 0.0;
         }
-        if (is_leaf(whole)) return pair.apart(whole) ? none : contact_in_leaf(whole);
+        if (is_leaf(whole)) return pair_.apart(whole) ? none : contact_in_leaf(whole);
         IntervalStack stack;
         stack.push_halves(whole);  // it has no certificate
         unsigned limit = most_intervals, extensions = 0;
-        while (const auto found = search.next_without_certificate(stack, false, limit, is_leaf)) {
+        while (const auto found = search_.next_without_certificate(stack, false, limit, is_leaf)) {
             // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
             const bool is_wide = !is_leaf(*found);
             if (is_wide && extensions < most_extensions) {
                 ++extensions;
-                limit = search.intervals + extension;
+                limit = search_.intervals + extension;
                 stack.push_halves(*found);
                 continue;
             }
             const double contact = is_wide ? found->a : contact_in_leaf(*found);
             if (contact == none) continue;
-            leaf_of_answer = *found;
+            leaf_of_answer_ = *found;
             return contact;
         }
         return none;
@@ -60,33 +59,34 @@ public:
     double contact_in_leaf(Interval leaf)
     {
         // A positive lower bound is wanted for a pair that is apart at time 0, proven contact or not.
-        if (leaf.a > 0.0 && pair.contact_proven(leaf)) return leaf.a;
-        const PairCoefficients inside = pair.in_leaf(leaf);
+        if (leaf.a > 0.0 && pair_.contact_proven(leaf)) return leaf.a;
+        const PairCoefficients inside = pair_.in_leaf(leaf);
         std::optional<double> likely;
         if (leaf.width() >= narrowest_touched) {
-            const Touch<double> found = pair.touch(inside);
+            const Touch<double> found = pair_.touch(inside);
             likely = found.likely;
             if (found.apart.value) return none;
             if (found.present.value) {
-                touch = found.time;
+                touch_ = found.time;
                 return found.lower_bound;
             }
         }
         // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in
         // each part. Their ends are times of the step, all of them doubles, as they are not halved below finest_relative.
         const bool is_first = leaf.a == 0.0;
-        const PairCoefficients& whole = is_first ? pair.coefficients() : inside;
+        const PairCoefficients& whole = is_first ? pair_.coefficients() : inside;
         const auto in_step = [&](double s) { return time_in_step(whole, s); };
         const auto is_finest = [&](Interval i) {
             return i.width() * whole.duration <= std::max(in_step(i.a) * finest_relative, finest_at_zero);
         };
-        OrderedSearch<kind> parts{whole, parameters, kernel};
+        OrderedSearch<kind> parts{whole, parameters_, kernel_};
         if (likely) parts.expect(is_first ? time_in_step(inside, *likely) : *likely);
-        parts.intervals = search.intervals;
+        parts.intervals = search_.intervals;
         IntervalStack stack;
         stack.push(is_first ? leaf : Interval{0.0, 1.0});
-        const auto part = parts.next_without_certificate(stack, true, std::min(search.intervals + most_intervals_in_leaf, most_intervals), is_finest);
-        search.intervals = parts.intervals;
+        const unsigned limit = std::min(search_.intervals + most_intervals_in_leaf, most_intervals);
+        const auto part = parts.next_without_certificate(stack, true, limit, is_finest);
+        search_.intervals = parts.intervals;
         return part ? in_step(part->a) : none;
     }
 
@@ -94,38 +94,38 @@ public:
     /// in some interval around s. A root may lie too close to the leaf's end, and inclusion may end in a wide leaf.
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
-        if (s == 0.0 && pair.zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
+        if (s == 0.0 && pair_.zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
         // At the cap, contact may have been found in an interval that is wider than a leaf.
-        if (pair.contact_proven(leaf_of_answer)) return leaf_of_answer.width() <= parameters.leaf_width ? Proof::leaf : Proof::nearby;
-        return proof_nearby(touch == none ? s : touch);
+        if (pair_.contact_proven(leaf_of_answer_)) return leaf_of_answer_.width() <= parameters_.leaf_width ? Proof::leaf : Proof::nearby;
+        return proof_nearby(touch_ == none ? s : touch_);
     }
 
     /// The same for any s: contact for certain in some interval around s.
-    [[nodiscard]] Proof proof_nearby(double s) const { return pair.contact_proven_near(s) ? Proof::nearby : Proof::none; }
+    [[nodiscard]] Proof proof_nearby(double s) const { return pair_.contact_proven_near(s) ? Proof::nearby : Proof::none; }
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
     /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which fewer than
     /// that many have not come to. Not where it touches: that has been looked at, in another way (well_shaped_at).
     [[nodiscard]] bool in_doubt(double s) const
     {
-        return touch == none && (search.intervals >= most_intervals_in_leaf || !pair.has_area(s));
+        return touch_ == none && (search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
     }
 
-    [[nodiscard]] unsigned intervals() const { return search.intervals; }
+    [[nodiscard]] unsigned intervals() const { return search_.intervals; }
     /// One that was examined by someone who shares the cap.
-    void count_interval() { ++search.intervals; }
+    void count_interval() { ++search_.intervals; }
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;
     /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or to finest_at_zero.
     static constexpr double finest_relative = 0x1p-52;
 
-    const PairPolynomials<kind>& pair;
-    const SearchParameters& parameters;
-    const IntervalKernel* kernel;
-    OrderedSearch<kind> search;
-    Interval leaf_of_answer{0.0, 1.0};  ///< Where first_contact() found contact.
-    double touch = none;                ///< And where it touches in there (touching.hpp).
+    const PairPolynomials<kind>& pair_;
+    const SearchParameters& parameters_;
+    const IntervalKernel* kernel_;
+    OrderedSearch<kind> search_;
+    Interval leaf_of_answer_{0.0, 1.0};  ///< Where first_contact() found contact.
+    double touch_ = none;                ///< And where it touches in there (touching.hpp).
 };
 
 }  // namespace fastccd::scalar

@@ -18,10 +18,10 @@ template <PairKind kind>
 class OrderedSearch {
 public:
     /// Over [0, 1] of the coefficients. Without `lanes`, or with a kernel that has none for intervals, they are looked at one at a time.
-    OrderedSearch(const PairCoefficients& coefficients, const SearchParameters& search_parameters, const IntervalKernel* lanes)
-        : pair{coefficients}, parameters{search_parameters}
+    OrderedSearch(const PairCoefficients& pair, const SearchParameters& parameters, const IntervalKernel* kernel)
+        : pair_{pair}, parameters_{parameters}
     {
-        if (lanes != nullptr) kernel = *lanes;
+        if (kernel != nullptr) kernel_ = *kernel;
     }
 
     /// Takes intervals from the stack and counts them; drops those with a certificate and halves the others, until one of those
@@ -31,13 +31,13 @@ public:
     std::optional<Interval> next_without_certificate(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
     {
         while (!stack.empty()) {
-            if (kernel.apart != nullptr && intervals + kernel.lanes <= limit) {
+            if (kernel_.apart != nullptr && intervals + kernel_.lanes <= limit) {
                 if (const auto found = look_at_several(stack, by_area, limit, narrowest)) return found;
                 continue;
             }
             const Interval i = stack.pop();
             ++intervals;
-            if (apart_on<kind>(pair, i.a, i.b).value || (by_area && apart_by_area_on<kind>(pair, i.a, i.b).value)) continue;
+            if (apart_on<kind>(pair_, i.a, i.b).value || (by_area && apart_by_area_on<kind>(pair_, i.a, i.b).value)) continue;
             if (intervals > limit || narrowest(i)) return i;
             stack.push_halves(i);
         }
@@ -45,7 +45,7 @@ public:
     }
 
     /// Before anything is looked at: where contact is expected, if that is known.
-    void expect(double time) { expected.emplace(time); }
+    void expect(double time) { expected_.emplace(time); }
 
     unsigned intervals = 0;  ///< Counted.
 
@@ -66,11 +66,11 @@ private:
     template <class Narrowest>
     std::optional<Interval> look_at_several(IntervalStack& stack, bool by_area, unsigned limit, Narrowest narrowest)
     {
-        if (!expected) expected.emplace(pair, parameters);
+        if (!expected_) expected_.emplace(pair_, parameters_);
         const Interval next = stack.peek(0);
-        const double target = expected->from(next.a);
+        const double target = expected_->from(next.a);
         if (target == ExpectedContact::nowhere) return look_at_halves(stack, by_area, narrowest);
-        if (by_area || !next.contains(target) || !next.contains(meeting) || intervals + most_beside_way > limit)
+        if (by_area || !next.contains(target) || !next.contains(meeting_) || intervals + most_beside_way > limit)
             return look_towards(target, stack, by_area, narrowest);
         return look_beside_way(target, stack, narrowest);
     }
@@ -85,11 +85,11 @@ private:
         const Interval first = stack.pop();
         Interval way = first;
         unsigned ways = 1;
-        for (; questions.size < kernel.lanes && !narrowest(way); ++ways) {
+        for (; questions.size < kernel_.lanes && !narrowest(way); ++ways) {
             const double middle = way.middle();
             const bool turns_right = middle < target;
             const Interval next{turns_right ? middle : way.a, turns_right ? way.b : middle};
-            if (!next.contains(meeting)) break;
+            if (!next.contains(meeting_)) break;
             questions.put(questions.size, {way.a, middle});
             questions.size += unsigned{turns_right};
             stack.push({middle, way.b});
@@ -100,7 +100,7 @@ private:
             // One of those has none. What follows from it is left to the other ways to look.
             stack.drop(stack.size() + 1 - waiting);
             stack.push(first);
-            meeting = ExpectedContact::nowhere;
+            meeting_ = ExpectedContact::nowhere;
             return std::nullopt;
         }
         intervals += ways + questions.size;
@@ -111,19 +111,19 @@ private:
 
     unsigned ask(Questions& questions, bool by_area) const
     {
-        for (unsigned k = questions.size; k < kernel.lanes; ++k) questions.put(k, questions.at(0));
+        for (unsigned k = questions.size; k < kernel_.lanes; ++k) questions.put(k, questions.at(0));
         unsigned met = 0;
-        for (unsigned k = 0; k < kernel.lanes; ++k) met |= unsigned{questions.starts[k] <= meeting && meeting <= questions.ends[k]} << k;
-        return kernel.apart(pair, questions.starts, questions.ends, met, by_area);
+        for (unsigned k = 0; k < kernel_.lanes; ++k) met |= unsigned{questions.starts[k] <= meeting_ && meeting_ <= questions.ends[k]} << k;
+        return kernel_.apart(pair_, questions.starts, questions.ends, met, by_area);
     }
 
     /// Whether the pair meets where it is expected to: most that come this far do, and intervals around that time need not be looked at.
     void meet_at(double target)
     {
-        if (target == tried) return;
-        tried = target;
-        const double root = expected->root();
-        meeting = root != ExpectedContact::nowhere && meets_at<kind>(pair, root).value ? root : ExpectedContact::nowhere;
+        if (target == tried_) return;
+        tried_ = target;
+        const double root = expected_->root();
+        meeting_ = root != ExpectedContact::nowhere && meets_at<kind>(pair_, root).value ? root : ExpectedContact::nowhere;
     }
 
     /// Intervals that wait, each with its halves.
@@ -131,10 +131,10 @@ private:
     std::optional<Interval> look_at_halves(IntervalStack& stack, bool by_area, Narrowest narrowest)
     {
         Questions questions;
-        for (unsigned k = 0; k < stack.size() && questions.size < kernel.lanes; ++k) {
+        for (unsigned k = 0; k < stack.size() && questions.size < kernel_.lanes; ++k) {
             const Interval i = stack.peek(k);
             questions.put(questions.size++, i);
-            if (questions.size + 2 > kernel.lanes || narrowest(i)) continue;
+            if (questions.size + 2 > kernel_.lanes || narrowest(i)) continue;
             questions.put(questions.size++, {i.a, i.middle()});
             questions.put(questions.size++, {i.middle(), i.b});
         }
@@ -149,7 +149,7 @@ private:
         unsigned passed = 0, apart = 0;  // bits: what is expected to have a certificate
         Interval way{};
         bool holds = false;  // the way the target
-        while (!holds && passed < stack.size() && questions.size < kernel.lanes) {
+        while (!holds && passed < stack.size() && questions.size < kernel_.lanes) {
             way = stack.peek(passed++);
             holds = way.contains(target);
             apart |= unsigned{!holds} << questions.size;
@@ -157,7 +157,7 @@ private:
         }
         Interval beside[most_lanes];  // on the right of the way
         unsigned right = 0;
-        while (holds && questions.size + 2 <= kernel.lanes && !narrowest(way)) {
+        while (holds && questions.size + 2 <= kernel_.lanes && !narrowest(way)) {
             const double middle = way.middle();
             const bool turns_right = middle < target;
             questions.put(questions.size, {way.a, middle});
@@ -198,14 +198,14 @@ private:
         return std::nullopt;
     }
 
-    const PairCoefficients& pair;
-    const SearchParameters& parameters;
-    IntervalKernel kernel{};
+    const PairCoefficients& pair_;
+    const SearchParameters& parameters_;
+    IntervalKernel kernel_{};
     /// Found when lanes are asked for the first time: for pairs that rest on one another, which are told by one look, it would take
     /// longer than all else.
-    std::optional<ExpectedContact> expected;
-    double tried = -1.0;                       ///< Where a meeting was looked for last.
-    double meeting = ExpectedContact::nowhere; ///< A time of which meeting.hpp says that no interval around it has a certificate.
+    std::optional<ExpectedContact> expected_;
+    double tried_ = -1.0;                       ///< Where a meeting was looked for last.
+    double meeting_ = ExpectedContact::nowhere; ///< A time of which meeting.hpp says that no interval around it has a certificate.
 };
 
 }  // namespace fastccd::scalar

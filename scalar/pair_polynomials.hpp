@@ -21,51 +21,51 @@ public:
     {
         const RelativeMotion<double> r = scaled_relative_motion(coordinates, parameters.t_max);
         if constexpr (kind == PairKind::edge_edge)
-            apart_throughout = find_coefficients<kind>(r, scaled_relative_motion(coordinates, parameters.t_max, 1), parameters.bounds, pair).value;
+            apart_throughout_ = find_coefficients<kind>(r, scaled_relative_motion(coordinates, parameters.t_max, 1), parameters.bounds, pair_).value;
         else
-            apart_throughout = find_coefficients<kind>(r, r, parameters.bounds, pair).value;
+            apart_throughout_ = find_coefficients<kind>(r, r, parameters.bounds, pair_).value;
     }
 
     /// The certificates on [0, 1], as the lanes compute them.
-    [[nodiscard]] bool apart() const { return apart_throughout; }
+    [[nodiscard]] bool apart() const { return apart_throughout_; }
 
     /// True if one of the three certificates proves absence on the interval.
-    [[nodiscard]] bool apart(Interval i) const { return apart_on<kind>(pair, i.a, i.b).value; }
+    [[nodiscard]] bool apart(Interval i) const { return apart_on<kind>(pair_, i.a, i.b).value; }
 
     /// Bernstein coefficients of the coplanarity cubic on the interval, each within cubic_bound().
-    [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return coplanarity_on(pair, i.a, i.b); }
-    [[nodiscard]] double cubic_bound() const { return pair.cubic_bound; }
+    [[nodiscard]] Cubic<double> coplanarity(Interval i) const { return coplanarity_on(pair_, i.a, i.b); }
+    [[nodiscard]] double cubic_bound() const { return pair_.cubic_bound; }
 
     /// The pair's polynomials over a leaf, with the bounds for its parts (restriction.hpp).
     [[nodiscard]] PairCoefficients in_leaf(Interval leaf) const
     {
-        PairCoefficients inside = pair;
-        static_cast<PolynomialsOf<double>&>(inside) = restricted_to<kind>(pair, leaf.a, leaf.b);
+        PairCoefficients inside = pair_;
+        static_cast<PolynomialsOf<double>&>(inside) = restricted_to<kind>(pair_, leaf.a, leaf.b);
         add_rounding_on_parts<kind>(inside);
         return inside;
     }
 
     /// True if every coplanar time of the interval is a contact: proper inclusion in some projection.
-    [[nodiscard]] bool included(Interval i) const { return included_on<kind>(pair, Between<double>{i.a, i.b}).value; }
+    [[nodiscard]] bool included(Interval i) const { return included_on<kind>(pair_, Between<double>{i.a, i.b}).value; }
 
     // See touching.hpp.
-    [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf) const { return touch_in<kind>(leaf, pair, less_equal(0.0, 1.0)); }
-    [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair, Between<double>{i.a, i.b}).value; }
-    [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair, s).value; }
-    [[nodiscard]] bool zero_at_start() const { return FASTCCD_KERNEL_NAMESPACE::zero_at_start(pair).value; }
+    [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf) const { return touch_in<kind>(leaf, pair_, less_equal(0.0, 1.0)); }
+    [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair_, Between<double>{i.a, i.b}).value; }
+    [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair_, s).value; }
+    [[nodiscard]] bool zero_at_start() const { return FASTCCD_KERNEL_NAMESPACE::zero_at_start(pair_).value; }
     [[nodiscard]] bool in_contact_at_start(double leaf_width) const
     {
-        return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair, leaf_width).value;
+        return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair_, leaf_width).value;
     }
-    [[nodiscard]] bool well_shaped_at_start() const { return FASTCCD_KERNEL_NAMESPACE::well_shaped_at_start<kind>(pair).value; }
-    [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair, s).value; }
+    [[nodiscard]] bool well_shaped_at_start() const { return FASTCCD_KERNEL_NAMESPACE::well_shaped_at_start<kind>(pair_).value; }
+    [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair_, s).value; }
 
     /// For kernels that take several intervals at a time.
-    [[nodiscard]] const PairCoefficients& coefficients() const { return pair; }
+    [[nodiscard]] const PairCoefficients& coefficients() const { return pair_; }
 
 private:
-    PairCoefficients pair;
-    bool apart_throughout;
+    PairCoefficients pair_;
+    bool apart_throughout_;
 };
 
 }  // namespace fastccd::scalar

@@ -45,19 +45,19 @@ AxisDifferences::AxisDifferences(const double* coordinates, int axis)
         // A sixteenth where a difference could overflow; exact, but for coordinates that then have others 2^2000 times as large beside
         // them. Each end by itself: at the other one all may be tiny.
         const double coordinate = std::max({std::abs(x(0)), std::abs(x(1)), std::abs(x(2)), std::abs(x(3))});
-        shift[end] = coordinate > 0x1p1021 ? 4 : 0;
-        const double factor = shift[end] == 0 ? 1.0 : 0x1p-4;
+        shift_[end] = coordinate > 0x1p1021 ? 4 : 0;
+        const double factor = shift_[end] == 0 ? 1.0 : 0x1p-4;
         for (int i = 0; i < 3; ++i) {
-            value[end][i] = x(i + 1) * factor - x(0) * factor;
-            largest[end] = std::max(largest[end], std::abs(value[end][i]));
+            value_[end][i] = x(i + 1) * factor - x(0) * factor;
+            largest_[end] = std::max(largest_[end], std::abs(value_[end][i]));
         }
     }
 }
 
 int AxisDifferences::exponent(double t_max) const
 {
-    const int from_start = largest[0] > 0.0 ? std::ilogb(largest[0]) + shift[0] : std::numeric_limits<int>::min();
-    const int from_end = largest[1] > 0.0 ? std::ilogb(largest[1]) + shift[1] + std::ilogb(t_max) : std::numeric_limits<int>::min();
+    const int from_start = largest_[0] > 0.0 ? std::ilogb(largest_[0]) + shift_[0] : std::numeric_limits<int>::min();
+    const int from_end = largest_[1] > 0.0 ? std::ilogb(largest_[1]) + shift_[1] + std::ilogb(t_max) : std::numeric_limits<int>::min();
     return std::max(from_start, from_end);
 }
 
@@ -66,8 +66,8 @@ void AxisDifferences::put(double (&start)[3], double (&end)[3], double t_max, in
     const int exponent = std::ilogb(t_max);
     const double significand = std::scalbn(t_max, -exponent);
     for (int i = 0; i < 3; ++i) {
-        start[i] = std::scalbn(value[0][i], shift[0] + power);
-        const double q = std::scalbn(value[1][i], shift[1] + power + exponent);
+        start[i] = std::scalbn(value_[0][i], shift_[0] + power);
+        const double q = std::scalbn(value_[1][i], shift_[1] + power + exponent);
         end[i] = t_max == 1.0 ? q : (1.0 - t_max) * start[i] + significand * q;
     }
 }

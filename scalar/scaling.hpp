@@ -28,7 +28,7 @@ public:
     AxisDifferences(const double* coordinates, int axis);
 
     /// All are zero: the axis has no extent.
-    [[nodiscard]] bool zero() const { return largest[0] == 0.0 && largest[1] == 0.0; }
+    [[nodiscard]] bool zero() const { return largest_[0] == 0.0 && largest_[1] == 0.0; }
 
     /// Of the largest |component| over [0, t_max], to within 2: (1 - t) p + t q at t = t_max is at most |p| + t |q|, and where it
     /// cancels there is p. Not if zero().
@@ -40,9 +40,9 @@ public:
     void put(double (&start)[3], double (&end)[3], double t_max, int power) const;
 
 private:
-    double value[2][3];  ///< To be multiplied by 2^shift.
-    int shift[2];
-    double largest[2] = {0.0, 0.0};  ///< Of the absolute values.
+    double value_[2][3];  ///< To be multiplied by 2^shift.
+    int shift_[2];
+    double largest_[2] = {0.0, 0.0};  ///< Of the absolute values.
 };
 
 }  // namespace fastccd::scalar

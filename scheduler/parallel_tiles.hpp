@@ -35,7 +35,7 @@ class Workers {
 public:
     Worker& local()
     {
-        Owner& owner = owners.local();
+        Owner& owner = owners_.local();
         if (owner == nullptr) owner.reset(::new (Memory{}.allocate(1)) Worker);
         return *owner;
     }
@@ -43,7 +43,7 @@ public:
     template <class Visit>
     void combine_each(Visit visit)
     {
-        owners.combine_each([&](const Owner& owner) {
+        owners_.combine_each([&](const Owner& owner) {
             if (owner != nullptr) visit(*owner);
         });
     }
@@ -59,7 +59,7 @@ private:
     };
     using Owner = std::unique_ptr<Worker, Release>;
 
-    tbb::combinable<Owner> owners;
+    tbb::combinable<Owner> owners_;
 };
 
 /// Of a call with `size` pairs. Few pairs are cut into smaller tiles, so that every thread gets its share of them.

@@ -11,61 +11,61 @@ namespace {
 /// Decided by one call, one pair a lane.
 class Block {
 public:
-    /// `for_doubts`: for pairs whose start is in doubt, if the kernel says so of any; `for_others`: for those that are not answered; if there is
+    /// `doubts`: for pairs whose start is in doubt, if the kernel says so of any; `others`: for those that are not answered; if there is
     /// none, they are for the search.
-    Block(const Job& j, std::size_t first_pair, TileScratch& s, TouchingBlock* k, Block* for_doubts, Block* for_others)
-        : job{j}, first{first_pair}, scratch{s}, kernel{k}, doubts{for_doubts}, others{for_others}
+    Block(const Job& job, std::size_t first, TileScratch& scratch, TouchingBlock* kernel, Block* doubts, Block* others)
+        : job_{job}, first_{first}, scratch_{scratch}, kernel_{kernel}, doubts_{doubts}, others_{others}
     {
     }
 
     void take(std::size_t i)
     {
-        load_pair(job.kind, job.source, first + i, coordinates[0] + size, block_pairs);
-        answers.left[size] = scratch.touch_time[i];
-        numbers[size++] = i;
-        if (size == block_pairs) decide();
+        load_pair(job_.kind, job_.source, first_ + i, coordinates_[0] + size_, block_pairs);
+        answers_.left[size_] = scratch_.touch_time[i];
+        numbers_[size_++] = i;
+        if (size_ == block_pairs) decide();
     }
 
     void decide()
     {
-        if (size == 0) return;
-        for (std::size_t lane = size; lane < block_pairs; ++lane) {  // the first one again
-            for (double(&row)[block_pairs] : coordinates) row[lane] = row[0];
-            answers.left[lane] = answers.left[0];
+        if (size_ == 0) return;
+        for (std::size_t lane = size_; lane < block_pairs; ++lane) {  // the first one again
+            for (double(&row)[block_pairs] : coordinates_) row[lane] = row[0];
+            answers_.left[lane] = answers_.left[0];
         }
-        kernel(job.kind, coordinates[0], job.parameters, answers);
-        for (std::size_t lane = 0; lane < size; ++lane) {
+        kernel_(job_.kind, coordinates_[0], job_.parameters, answers_);
+        for (std::size_t lane = 0; lane < size_; ++lane) {
             const auto has = [&](unsigned bits) { return (bits >> lane & 1) != 0; };
-            const std::size_t i = numbers[lane];
+            const std::size_t i = numbers_[lane];
             const std::uint64_t bit = std::uint64_t{1} << i % 64;
-            if (has(answers.reported)) {
-                scratch.time[i] = answers.time[lane];
-                scratch.earliest = std::min(scratch.earliest, scratch.time[i]);
-                scratch.reported[i / 64] |= bit;
-                if (!has(answers.proven)) scratch.is_unproven[i / 64] |= bit;
-            } else if (has(answers.apart)) {
+            if (has(answers_.reported)) {
+                scratch_.time[i] = answers_.time[lane];
+                scratch_.earliest = std::min(scratch_.earliest, scratch_.time[i]);
+                scratch_.reported[i / 64] |= bit;
+                if (!has(answers_.proven)) scratch_.is_unproven[i / 64] |= bit;
+            } else if (has(answers_.apart)) {
                 continue;
-            } else if (has(answers.start_in_doubt)) {
-                doubts->take(i);
-            } else if (others != nullptr) {
-                others->take(i);
+            } else if (has(answers_.start_in_doubt)) {
+                doubts_->take(i);
+            } else if (others_ != nullptr) {
+                others_->take(i);
             } else {
-                scratch.is_undecided[i / 64] |= bit;
+                scratch_.is_undecided[i / 64] |= bit;
             }
         }
-        size = 0;
+        size_ = 0;
     }
 
 private:
-    const Job& job;
-    std::size_t first;
-    TileScratch& scratch;
-    TouchingBlock* kernel;
-    Block* doubts;
-    Block* others;
-    alignas(64) double coordinates[pair_coordinates][block_pairs];
-    TouchAnswers answers;
-    std::size_t numbers[block_pairs], size = 0;
+    const Job& job_;
+    std::size_t first_;
+    TileScratch& scratch_;
+    TouchingBlock* kernel_;
+    Block* doubts_;
+    Block* others_;
+    alignas(64) double coordinates_[pair_coordinates][block_pairs];
+    TouchAnswers answers_;
+    std::size_t numbers_[block_pairs], size_ = 0;
 };
 
 /// In narrower leaves most of what is not answered comes to the search all the same: random pairs at 1e-13 took 9 to 12 % longer.

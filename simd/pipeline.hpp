@@ -47,14 +47,14 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 template <PairKind kind, class L>
 class Pipeline {
 public:
-    static void run_tile(const TileRequest& request, TileScratch& scratch)
+    static void run_tile(const TileRequest& request, TileScratch& scratch_)
     {
-        Pipeline pipeline{request, scratch};
-        clear_results<L>(scratch, request.count);
-        scratch.screened.size = 0;
-        for (std::size_t i = 0; i < pipeline.source.size(); i += group_pairs) {
-            const std::size_t left = pipeline.source.size() - i, count = left < group_pairs ? left : group_pairs;
-            if (scratch.dense) {
+        Pipeline pipeline{request, scratch_};
+        clear_results<L>(scratch_, request.count);
+        scratch_.screened.size = 0;
+        for (std::size_t i = 0; i < pipeline.source_.size(); i += group_pairs) {
+            const std::size_t left = pipeline.source_.size() - i, count = left < group_pairs ? left : group_pairs;
+            if (scratch_.dense) {
                 pipeline.screen_dense_group(i, count);
             } else {
                 pipeline.screen_sparse_group(i, count, request.preferences);
@@ -62,23 +62,23 @@ public:
             }
         }
         pipeline.compare_screened(true);
-        pipeline.root_stages.finish();
-        mark_reported<L>(scratch, request.count);
+        pipeline.root_stages_.finish();
+        mark_reported<L>(scratch_, request.count);
     }
 
 private:
     static constexpr unsigned width = Lane<L>::width;
 
-    const SearchParameters& parameters;
-    const ScreeningBounds in_double, in_single;
-    const double cutoff;
-    TileScratch& scratch;
-    BlockSource<kind, L> source;
-    RootStages<kind, L> root_stages;
+    const SearchParameters& parameters_;
+    const ScreeningBounds in_double_, in_single_;
+    const double cutoff_;
+    TileScratch& scratch_;
+    BlockSource<kind, L> source_;
+    RootStages<kind, L> root_stages_;
 
-    FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& s)
-        : parameters{*request.parameters}, in_double{parameters.bounds.screening()}, in_single{parameters.bounds.screening_in_single()},
-          cutoff{request.cutoff}, scratch{s}, source{request, s}, root_stages{parameters, s}
+    FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& scratch)
+        : parameters_{*request.parameters}, in_double_{parameters_.bounds.screening()}, in_single_{parameters_.bounds.screening_in_single()},
+          cutoff_{request.cutoff}, scratch_{scratch}, source_{request, scratch}, root_stages_{parameters_, scratch}
     {
     }
 
@@ -86,9 +86,9 @@ private:
     [[nodiscard]] FASTCCD_INLINE const ScreeningBounds& bounds_of() const
     {
         if constexpr (Lane<S>::is_single)
-            return in_single;
+            return in_single_;
         else
-            return in_double;
+            return in_double_;
     }
 
     /// What the linear and cubic certificates say of a batch.
@@ -124,9 +124,9 @@ private:
         Parts<S> parts;
         for (unsigned k = 0; k < Parts<S>::count; ++k) {
             const std::size_t j = i + k * width < count ? i + k * width : i;
-            if (j % block_pairs == 0) source.at_block();
+            if (j % block_pairs == 0) source_.at_block();
             parts.at[k] = in_blocks(blocks, j);
-            source.at_batch(parts.at[k]);
+            source_.at_batch(parts.at[k]);
         }
         return parts;
     }
@@ -148,11 +148,11 @@ private:
     template <class S>
     void screen_group(std::size_t first, std::size_t count)
     {
-        const double* const blocks = source.group(first);
+        const double* const blocks = source_.group(first);
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
             PairRecord<S> record;
-            record.r = relative_motion_in<S, L>(next_parts<S>(blocks, i, count).at, block_pairs, parameters.t_max);
+            record.r = relative_motion_in<S, L>(next_parts<S>(blocks, i, count).at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
             kept |= std::uint64_t{found.kept} << i;
             beyond |= std::uint64_t{found.beyond} << i;
@@ -163,11 +163,11 @@ private:
         if constexpr (Lane<S>::is_single)
             if (beyond != 0) screen_again(blocks, kept, beyond);
         for (; beyond != 0; beyond &= beyond - 1)
-            set_bit(scratch.is_undecided, static_cast<unsigned>(source.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
-        scratch.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
+            set_bit(scratch_.is_undecided, static_cast<unsigned>(source_.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
+        scratch_.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
 
         // Eight at a time, the last of them perhaps in vain: processors foresee the number of eights better than that of pairs.
-        ScreenedQueue& queue = scratch.screened;
+        ScreenedQueue& queue = scratch_.screened;
         const auto more = static_cast<unsigned>(__builtin_popcountll(kept));
         const std::uint64_t last = std::uint64_t{1} << (count - 1);
         for (unsigned k = 0; k < more; k += 8) {
@@ -176,7 +176,7 @@ private:
                 const auto i = static_cast<std::size_t>(__builtin_ctzll(kept | last));
                 kept &= kept - 1;
                 queue.pairs[queue.size + k + j] = in_blocks(blocks, i);
-                queue.numbers[queue.size + k + j] = static_cast<double>(source.number(first + i));
+                queue.numbers[queue.size + k + j] = static_cast<double>(source_.number(first + i));
             }
         }
         queue.size += more;
@@ -198,7 +198,7 @@ private:
     }
     FASTCCD_INLINE Screening screen_again(const double* coordinates, PairRecord<L>& record)
     {
-        record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
+        record.r = relative_motion<L>(coordinates, block_pairs, parameters_.t_max);
         return screen(record);
     }
 
@@ -206,23 +206,23 @@ private:
     void screen_dense_group(std::size_t first, std::size_t count)
     {
         using S = typename Lane<L>::Screening;
-        const double* const blocks = source.group(first);
+        const double* const blocks = source_.group(first);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
             const Parts<S> parts = next_parts<S>(blocks, i, count);
             PairRecord<S> record;
-            record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters.t_max);
+            record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
             const unsigned in_use = lanes_in_use<S>(count - i);
             if ((in_use & found.beyond) != 0) kept += examine_again(parts, first + i, in_use & found.beyond);
             unsigned lanes = in_use & found.kept;
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
-            if (cutoff < 1.0 && lanes == 0) continue;
+            if (cutoff_ < 1.0 && lanes == 0) continue;
             take_parts(parts, first + i, mark, lanes);
         }
         // Less than what leads here, so that shares around one half do not go to and fro.
-        scratch.dense = 3 * kept >= count;
+        scratch_.dense = 3 * kept >= count;
     }
 
     /// What was examined goes on in double: both parts at once if that makes a batch at most, since a store for each field and batch
@@ -247,11 +247,11 @@ private:
     FASTCCD_INLINE void take_joined(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes, unsigned count)
     {
         const typename Lane<L>::template Joiner<> joiner{lanes};
-        root_stages.take_fields(count, [&](auto append) FASTCCD_INLINE_LAMBDA {
+        root_stages_.take_fields(count, [&](auto append) FASTCCD_INLINE_LAMBDA {
             const auto append_joined = [&](L low, L high) FASTCCD_INLINE_LAMBDA { return append(joiner(low, high)); };
-            combined_motion<L>(parts.at, block_pairs, parameters.t_max, append_joined);
-            append_joined(source.numbers(first) + Lane<L>::template widened<0>(mark),
-                          source.numbers(first + width) + Lane<L>::template widened<1>(mark));
+            combined_motion<L>(parts.at, block_pairs, parameters_.t_max, append_joined);
+            append_joined(source_.numbers(first) + Lane<L>::template widened<0>(mark),
+                          source_.numbers(first + width) + Lane<L>::template widened<1>(mark));
         });
     }
 
@@ -260,9 +260,9 @@ private:
     FASTCCD_INLINE void take(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
     {
         PairRecord<L> record;
-        record.r = relative_motion<L>(parts.at[k], block_pairs, parameters.t_max);
-        record.pair = source.numbers(first + k * width) + Lane<L>::template widened<k>(mark);
-        root_stages.take(record, lanes >> k * width & lanes_in_use<L>(width));
+        record.r = relative_motion<L>(parts.at[k], block_pairs, parameters_.t_max);
+        record.pair = source_.numbers(first + k * width) + Lane<L>::template widened<k>(mark);
+        root_stages_.take(record, lanes >> k * width & lanes_in_use<L>(width));
     }
 
     /// Pairs beyond the range in which they were examined, in double. Returns how many screening leaves.
@@ -275,8 +275,8 @@ private:
             if (lanes == 0) continue;
             PairRecord<L> record;
             const Screening found = screen_again(parts.at[k], record);
-            record.pair = source.numbers(first + k * width);
-            leave_undecided(scratch, record.pair, lanes & found.beyond);
+            record.pair = source_.numbers(first + k * width);
+            leave_undecided(scratch_, record.pair, lanes & found.beyond);
             kept += static_cast<unsigned>(__builtin_popcount(lanes & found.kept));
             examine(record, lanes & found.kept);
         }
@@ -288,7 +288,7 @@ private:
     template <class S>
     FASTCCD_INLINE S compare(const PairRecord<S>& record, unsigned& lanes)
     {
-        if (cutoff < 1.0) {
+        if (cutoff_ < 1.0) {
             lanes &= ~Lane<S>::bits(apart_until_cutoff(record));
             if (lanes == 0) return broadcast<S>(0.0);  // as for most batches, once a contact is known
         }
@@ -303,40 +303,40 @@ private:
     FASTCCD_INLINE void examine(PairRecord<L>& record, unsigned lanes)
     {
         const L mark = compare(record, lanes);
-        if (cutoff < 1.0 && lanes == 0) return;
+        if (cutoff_ < 1.0 && lanes == 0) return;
         // Otherwise even if no lane goes on, as in a third of the batches of four random pairs: no processor foresees which.
         record.pair = record.pair + mark;
-        root_stages.take(record, lanes);
+        root_stages_.take(record, lanes);
     }
 
     /// Takes full batches from the end of [screened], so that what stays need not move; and the rest too if `all`.
     void compare_screened(bool all)
     {
-        ScreenedQueue& queue = scratch.screened;
+        ScreenedQueue& queue = scratch_.screened;
         while (queue.size >= width || (all && queue.size > 0)) {
             const unsigned count = queue.size < width ? queue.size : width;
             queue.size -= count;
-            source.meanwhile();
+            source_.meanwhile();
             const double** const pairs = queue.pairs + queue.size;
             for (unsigned lane = count; lane < width; ++lane) pairs[lane] = pairs[count - 1];
             PairRecord<L> record;
-            record.r = relative_motion_of<L>(typename Lane<L>::Collector{source.blocks(), pairs}, parameters.t_max);
+            record.r = relative_motion_of<L>(typename Lane<L>::Collector{source_.blocks(), pairs}, parameters_.t_max);
             compute_pair_again(record);
             record.pair = Lane<L>::load(&queue.numbers[queue.size]);
             examine(record, lanes_in_use<L>(count));
         }
-        if (!source.is_in_place()) keep_waiting();
+        if (!source_.is_in_place()) keep_waiting();
     }
 
     /// Copies what is left in [screened], less than a batch, before other blocks take its place: pair k to lane k of `waiting`.
     void keep_waiting()
     {
-        for (unsigned k = 0; k < scratch.screened.size; ++k) {
-            double* const to = scratch.waiting + k;
-            const double* const from = scratch.screened.pairs[k];
+        for (unsigned k = 0; k < scratch_.screened.size; ++k) {
+            double* const to = scratch_.waiting + k;
+            const double* const from = scratch_.screened.pairs[k];
             if (from == to) continue;
             for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * block_pairs] = from[c * block_pairs];
-            scratch.screened.pairs[k] = to;
+            scratch_.screened.pairs[k] = to;
         }
     }
 
@@ -346,7 +346,7 @@ private:
     template <class S>
     FASTCCD_INLINE LaneMask<S> apart_until_cutoff(const PairRecord<S>& record)
     {
-        const double until = (cutoff + 2 * parameters.leaf_width) * (1.0 + 0x1p-22);
+        const double until = (cutoff_ + 2 * parameters_.leaf_width) * (1.0 + 0x1p-22);
         const S end = broadcast<S>(until < 1.0 ? until : 1.0);
         const RelativeMotion<S> r{{record.r.start[0], record.r.start[1], record.r.start[2]},
                                   {position(record.r, 0, end), position(record.r, 1, end), position(record.r, 2, end)}};

@@ -16,22 +16,22 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 template <PairKind kind, class L>
 class RootStages {
 public:
-    FASTCCD_INLINE RootStages(const SearchParameters& search_parameters, TileScratch& s) : parameters{search_parameters}, scratch{s}
+    FASTCCD_INLINE RootStages(const SearchParameters& parameters, TileScratch& scratch) : parameters_{parameters}, scratch_{scratch}
     {
-        scratch.candidates.size = scratch.slow.size = 0;
+        scratch_.candidates.size = scratch_.slow.size = 0;
     }
 
     /// Another batch of candidates.
     FASTCCD_INLINE void take(const PairRecord<L>& record, unsigned lanes)
     {
-        push(scratch.candidates, lanes, record);
+        push(scratch_.candidates, lanes, record);
         find_roots_if_many();
     }
     /// The same of `count` candidates: fields(append) calls append for each field.
     template <class Fields>
     FASTCCD_INLINE void take_fields(unsigned count, Fields fields)
     {
-        fields(Appender<PairQueue, L>{scratch.candidates, count});
+        fields(Appender<PairQueue, L>{scratch_.candidates, count});
         find_roots_if_many();
     }
 
@@ -45,13 +45,13 @@ public:
 private:
     static constexpr unsigned width = Lane<L>::width;
 
-    const SearchParameters& parameters;
-    TileScratch& scratch;
-    const bool may_note_touches = parameters.leaf_width >= narrowest_touched && !parameters.count_roots;
+    const SearchParameters& parameters_;
+    TileScratch& scratch_;
+    const bool may_note_touches_ = parameters_.leaf_width >= narrowest_touched && !parameters_.count_roots;
 
     FASTCCD_INLINE void find_roots_if_many()
     {
-        if (scratch.candidates.size >= PairQueue::drain_at) find_roots(false);
+        if (scratch_.candidates.size >= PairQueue::drain_at) find_roots(false);
     }
 
     /// The pieces in which the cubic changes sign, and a few steps towards the root in the first of them. Every step is done for all
@@ -59,27 +59,27 @@ private:
     /// hundred instructions, and a step that ends with a division is not waited for while the next batch's begins.
     void find_roots(bool all)
     {
-        const unsigned size = scratch.candidates.size, end = all ? size : size / width * width;
+        const unsigned size = scratch_.candidates.size, end = all ? size : size / width * width;
         for (unsigned i = 0; i < end; i += width) find_extrema(i);
         for (unsigned i = 0; i < end; i += width) find_pieces(i, lanes_in_use<L>(size - i));
         for (int step = 0; step < quick_steps; ++step)
             for (unsigned i = 0; i < end; i += width) approach_root(i);
         for (unsigned i = 0; i < end; i += width) decide_quickly(i);
-        drop_front(scratch.candidates, end);
+        drop_front(scratch_.candidates, end);
     }
 
     /// Leaves them where find_pieces() puts the piece.
     FASTCCD_INLINE void find_extrema(unsigned i)
     {
-        RootSearch& search = scratch.search;
+        RootSearch& search = scratch_.search;
         PairRecord<L> record;
-        read(scratch.candidates, i, record);
+        read(scratch_.candidates, i, record);
         compute_pair_again(record);
         const Cubic<L> f = bernstein(record.cubic);
         const Extrema<L> cuts = extrema(f);
         store(search.scale, i, record.scale);
         store(search.f, i, power_basis(f));
-        Lane<L>::store(&search.threshold[i], sign_threshold(f, record.scale.volume, parameters.bounds, parameters.leaf_width));
+        Lane<L>::store(&search.threshold[i], sign_threshold(f, record.scale.volume, parameters_.bounds, parameters_.leaf_width));
         Lane<L>::store(&search.low[i], cuts.first);
         Lane<L>::store(&search.high[i], cuts.second);
     }
@@ -87,8 +87,8 @@ private:
     /// In the window alone: no leaf straddles the middle of the step, where it may end, and the other half has a certificate.
     FASTCCD_INLINE void find_pieces(unsigned i, unsigned lanes)
     {
-        RootSearch& search = scratch.search;
-        const Window<L> window = window_of(read_pair<L>(scratch.candidates, i));
+        RootSearch& search = scratch_.search;
+        const Window<L> window = window_of(read_pair<L>(scratch_.candidates, i));
         const Extrema<L> cuts{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
         const MonotonePieces<L> pieces = monotone_pieces(load<PowerCubic, L>(search.f, i), cuts, Lane<L>::load(&search.threshold[i]),
                                                          window.low, window.high);
@@ -96,7 +96,7 @@ private:
         const unsigned certain = lanes & Lane<L>::bits(pieces.certain & less(broadcast<L>(smallest_volume), scale.volume));
         if (certain != lanes) {
             PairRecord<L> record;
-            read(scratch.candidates, i, record);
+            read(scratch_.candidates, i, record);
             record.scale = scale;
             note_anywhere(record.pair, left_by_quarters(record, lanes & ~certain));
         }
@@ -124,23 +124,23 @@ private:
     /// parallel: most of them are clearly apart. Returns the others. Rare, so out of the way.
     __attribute__((noinline)) unsigned left_by_quarters(const PairRecord<L>& record, unsigned lanes) const
     {
-        if (parameters.leaf_width > 0.25) return lanes;  // a leaf is more than a quarter
+        if (parameters_.leaf_width > 0.25) return lanes;  // a leaf is more than a quarter
         const Window<L> window = window_of(record.pair);
-        return lanes & ~apart_on_quarters<kind>(record.r, record.scale, parameters.bounds.on_part(), window.low, window.high, lanes);
+        return lanes & ~apart_on_quarters<kind>(record.r, record.scale, parameters_.bounds.on_part(), window.low, window.high, lanes);
     }
 
     /// Leaves it to a look at all certificates, from the pair's coordinates, where contact may be.
     FASTCCD_INLINE void note_anywhere(L pair, unsigned lanes)
     {
-        if (may_note_touches)
-            note_touches(scratch, pair, broadcast<L>(0.0), lanes);
+        if (may_note_touches_)
+            note_touches(scratch_, pair, broadcast<L>(0.0), lanes);
         else
-            leave_undecided(scratch, pair, lanes);
+            leave_undecided(scratch_, pair, lanes);
     }
 
     FASTCCD_INLINE void approach_root(unsigned i)
     {
-        RootSearch& search = scratch.search;
+        RootSearch& search = scratch_.search;
         const Bracket<L> piece{Lane<L>::load(&search.low[i]), Lane<L>::load(&search.high[i])};
         Lane<L>::store(&search.guess[i], clipped_step(load<PowerCubic, L>(search.f, i), piece, Lane<L>::load(&search.guess[i])));
     }
@@ -168,7 +168,7 @@ private:
     FASTCCD_INLINE Leaf leaf_at(L time) const
     {
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-        const L w = broadcast<L>(parameters.leaf_width), left = leaf_start(time, parameters);
+        const L w = broadcast<L>(parameters_.leaf_width), left = leaf_start(time, parameters_);
         const L right = left + w, half = broadcast<L>(0.5) * w;
         return {left, right, left + half, half, less(zero, left) & less_equal(right, one)};
     }
@@ -184,7 +184,7 @@ private:
         const RootBracket bracket = bracket_root(root, delta);
         // With one leaf more on either side: the margin of the certified search. The guess's leaf lies within.
         const Inclusion<L> inclusion = projected_inclusion<kind>(
-            root.r, root.scale, root.guess, delta + broadcast<L>(parameters.leaf_width), parameters.bounds);
+            root.r, root.scale, root.guess, delta + broadcast<L>(parameters_.leaf_width), parameters_.bounds);
         return {inclusion.present, bracket.certain & inclusion.absent};
     }
 
@@ -192,15 +192,15 @@ private:
     /// threshold at both ends of the leaf, then it has a root there and none beside it, and likewise in the bracket.
     FASTCCD_INLINE void decide_quickly(unsigned i)
     {
-        const unsigned lanes = scratch.search.pieces[0][i / width];
+        const unsigned lanes = scratch_.search.pieces[0][i / width];
         PairRecord<L> root;
-        read(scratch.candidates, i, root);
-        root.scale = load<Scales, L>(scratch.search.scale, i);
-        root.f = load<PowerCubic, L>(scratch.search.f, i);
-        root.threshold = Lane<L>::load(&scratch.search.threshold[i]);
-        root.low = Lane<L>::load(&scratch.search.low[i]);
-        root.high = Lane<L>::load(&scratch.search.high[i]);
-        root.guess = Lane<L>::load(&scratch.search.guess[i]);
+        read(scratch_.candidates, i, root);
+        root.scale = load<Scales, L>(scratch_.search.scale, i);
+        root.f = load<PowerCubic, L>(scratch_.search.f, i);
+        root.threshold = Lane<L>::load(&scratch_.search.threshold[i]);
+        root.low = Lane<L>::load(&scratch_.search.low[i]);
+        root.high = Lane<L>::load(&scratch_.search.high[i]);
+        root.guess = Lane<L>::load(&scratch_.search.guess[i]);
 
         // The leaf first: few operations that wait for one another, done by the time the many of the bracket are.
         const Leaf leaf = leaf_at(root.guess);
@@ -214,9 +214,9 @@ private:
 
         // The first root of some lanes and the second of others at once, whether there are any or not: few pairs have one left, but
         // half of the batches of four have such a pair, and not to foresee which costs more. After a contact no other root matters.
-        const unsigned settled = parameters.count_roots ? 0 : contact;
-        const unsigned second = scratch.search.pieces[1][i / width] & ~settled;
-        const L second_low = Lane<L>::load(&scratch.search.later_low[i]), second_high = Lane<L>::load(&scratch.search.later_high[i]);
+        const unsigned settled = parameters_.count_roots ? 0 : contact;
+        const unsigned second = scratch_.search.pieces[1][i / width] & ~settled;
+        const L second_low = Lane<L>::load(&scratch_.search.later_low[i]), second_high = Lane<L>::load(&scratch_.search.later_high[i]);
         root.low = select<L>(decided, second_low, root.low);
         root.high = select<L>(decided, second_high, root.high);
         leave_for_later(root, undecided | second);
@@ -225,9 +225,9 @@ private:
             root.high = second_high;
             leave_for_later(root, both);
         }
-        if (const unsigned third = scratch.search.pieces[2][i / width] & ~settled; third != 0) {
-            root.low = Lane<L>::load(&scratch.search.later_high[i]);
-            root.high = Lane<L>::load(&scratch.search.end[i]);
+        if (const unsigned third = scratch_.search.pieces[2][i / width] & ~settled; third != 0) {
+            root.low = Lane<L>::load(&scratch_.search.later_high[i]);
+            root.high = Lane<L>::load(&scratch_.search.end[i]);
             leave_for_later(root, third);
         }
     }
@@ -235,26 +235,26 @@ private:
     /// Leaves it to refine().
     FASTCCD_INLINE void leave_for_later(const PairRecord<L>& root, unsigned lanes)
     {
-        push(scratch.slow, lanes, root);
-        if (scratch.slow.size >= RootQueue::drain_at) refine(false);
+        push(scratch_.slow, lanes, root);
+        if (scratch_.slow.size >= RootQueue::drain_at) refine(false);
     }
 
     /// Roots that need more: as many steps as any takes, one step of all batches after the other; then decides with tighter bounds.
     void refine(bool all)
     {
-        const unsigned size = scratch.slow.size, end = all ? size : size / width * width;
+        const unsigned size = scratch_.slow.size, end = all ? size : size / width * width;
         for (unsigned i = 0; i < end; i += width) prepare_refinement(i);
         for (int step = 0; step < most_steps; ++step)
             for (unsigned i = 0; i < end; i += width) refine_root(i);
         for (unsigned i = 0; i < end; i += width) decide(i, lanes_in_use<L>(size - i));
-        drop_front(scratch.slow, end);
+        drop_front(scratch_.slow, end);
     }
 
     FASTCCD_INLINE void prepare_refinement(unsigned i)
     {
-        Refinement& refinement = scratch.refinement;
+        Refinement& refinement = scratch_.refinement;
         PairRecord<L> root;
-        read(scratch.slow, i, root);
+        read(scratch_.slow, i, root);
         root.f = power_basis(bernstein(coplanarity_cubic(root.r, cross_product(root.r, 0, 1))));
         store(refinement.f, i, root.f);
         const L at_low = evaluate(root.f, root.low), at_high = evaluate(root.f, root.high);
@@ -267,7 +267,7 @@ private:
 
     FASTCCD_INLINE void refine_root(unsigned i)
     {
-        Refinement& refinement = scratch.refinement;
+        Refinement& refinement = scratch_.refinement;
         Bracket<L> bracket{Lane<L>::load(&refinement.low[i]), Lane<L>::load(&refinement.high[i])};
         const LaneMask<L> rising = less(broadcast<L>(0.0), Lane<L>::load(&refinement.slope[i]));
         const L guess = bracketed_step(load<PowerCubic, L>(refinement.f, i), rising, bracket, Lane<L>::load(&refinement.guess[i]));
@@ -280,11 +280,11 @@ private:
     FASTCCD_INLINE void decide(unsigned i, unsigned lanes)
     {
         PairRecord<L> root;
-        read(scratch.slow, i, root);
-        root.guess = Lane<L>::load(&scratch.refinement.guess[i]);
-        const Cubic<L> f = compute_again(root, parameters);
+        read(scratch_.slow, i, root);
+        root.guess = Lane<L>::load(&scratch_.refinement.guess[i]);
+        const Cubic<L> f = compute_again(root, parameters_);
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-        const L w = broadcast<L>(parameters.leaf_width);
+        const L w = broadcast<L>(parameters_.leaf_width);
         const RootBracket bracket = bracket_root(root, broadcast<L>(fine_bracket));
         const Leaf leaf = leaf_at(root.guess);
 
@@ -292,14 +292,14 @@ private:
         // from the leaf to the bracket's high side (and a leaf after it).
         const L before = max(min(bracket.low, leaf.left) - w, zero), after = min(max(bracket.high, leaf.right) + w, one);
         const Cubic<L> f_before = on_interval(f, before, leaf.left), f_after = on_interval(f, leaf.right, after);
-        const L bound = cubic_bound_lanes(root.r, root.scale.volume, parameters.bounds);
+        const L bound = cubic_bound_lanes(root.r, root.scale.volume, parameters_.bounds);
         const LaneMask<L> crosses =
             leaf.inner & bracket.certain &
             ((less(bound, smallest(f_before)) & less(largest(f_after), zero - bound)) |
              (less(largest(f_before), zero - bound) & less(bound, smallest(f_after))));
 
         const Inclusion<L> inclusion =
-            projected_inclusion<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds);
+            projected_inclusion<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters_.bounds);
         const unsigned crossing = lanes & Lane<L>::bits(crosses);
         const unsigned contact = crossing & Lane<L>::bits(inclusion.present);
         unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
@@ -307,7 +307,7 @@ private:
         // halving; of the same lengths, unless it scales axes. Where f is not zero all axes have an extent, so those of the step are
         // unscaled if those of the searched part are, as lanes take none that are too large.
         if ((undecided & crossing) != 0) {
-            const LaneMask<L> apart = area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters.bounds);
+            const LaneMask<L> apart = area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters_.bounds);
             undecided &= ~(crossing & Lane<L>::bits(apart & is_unscaled(root.r, root.r)));
         }
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
@@ -320,23 +320,23 @@ private:
     {
         lanes &= ~Lane<L>::bits(look_around(root).absent);
         if (lanes != 0) lanes = left_by_quarters(root, lanes);
-        if (may_note_touches && lanes != 0) {
+        if (may_note_touches_ && lanes != 0) {
             // f has one strict sign from the bracket's low side, and a leaf before it, to the leaf.
             const Leaf leaf = leaf_around(root.guess);
-            const L w = broadcast<L>(parameters.leaf_width), zero = broadcast<L>(0.0);
+            const L w = broadcast<L>(parameters_.leaf_width), zero = broadcast<L>(0.0);
             const RootBracket bracket = bracket_root(root, broadcast<L>(fine_bracket));
             const Cubic<L> f_before = on_interval(bernstein(root.cubic), max(min(bracket.low, leaf.left) - w, zero), leaf.left);
-            const L bound = cubic_bound_lanes(root.r, root.scale.volume, parameters.bounds);
+            const L bound = cubic_bound_lanes(root.r, root.scale.volume, parameters_.bounds);
             const LaneMask<L> apart_before = less(bound, smallest(f_before)) | less(largest(f_before), negated(bound));
             const unsigned noted = lanes & Lane<L>::bits(leaf.inner & bracket.certain & apart_before);
-            note_touches(scratch, root.pair, leaf.left, noted);
+            note_touches(scratch_, root.pair, leaf.left, noted);
             lanes &= ~noted;
         }
         note_anywhere(root.pair, lanes);
     }
 
     /// The leaf that holds `time`, or the one before it if `time` is close to its start.
-    FASTCCD_INLINE Leaf leaf_around(L time) const { return leaf_at(time - broadcast<L>(0.25 * parameters.leaf_width)); }
+    FASTCCD_INLINE Leaf leaf_around(L time) const { return leaf_at(time - broadcast<L>(0.25 * parameters_.leaf_width)); }
 
     /// Without branches on which lanes are in contact: no processor foresees that, and while it finds out, the next batch would
     /// wait. `reported` is left to mark_reported: bits of one word would wait for one another here.
@@ -350,8 +350,8 @@ private:
         for (unsigned lane = 0; lane < width; ++lane) {
             const unsigned nowhere = static_cast<unsigned>(tile_pairs) + lane, is_contact = contact >> lane & 1;
             const unsigned i = nowhere + ((static_cast<unsigned>(pairs[lane]) - nowhere) & (0u - is_contact));
-            scratch.time[i] = lefts[lane] < scratch.time[i] ? lefts[lane] : scratch.time[i];
-            ++scratch.roots[i];
+            scratch_.time[i] = lefts[lane] < scratch_.time[i] ? lefts[lane] : scratch_.time[i];
+            ++scratch_.roots[i];
         }
     }
 };

@@ -38,22 +38,22 @@ FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit 
 template <PairKind kind, class L>
 class SeparationPipeline {
 public:
-    static void run_tile(const TileRequest& request, TileScratch& scratch)
+    static void run_tile(const TileRequest& request, TileScratch& scratch_)
     {
-        SeparationPipeline pipeline{request, scratch};
-        clear_results<L>(scratch, request.count);
-        scratch.separating.size = scratch.advancing.size = 0;
-        const std::size_t size = pipeline.source.size();
+        SeparationPipeline pipeline{request, scratch_};
+        clear_results<L>(scratch_, request.count);
+        scratch_.separating.size = scratch_.advancing.size = 0;
+        const std::size_t size = pipeline.source_.size();
         for (std::size_t first = 0; first < size; first += group_pairs) {
-            const double* const blocks = pipeline.source.group(first);
+            const double* const blocks = pipeline.source_.group(first);
             const std::size_t end = size - first < group_pairs ? size : first + group_pairs;
             for (std::size_t i = first; i < end; i += block_pairs) {
                 const double* const block = blocks + (i - first) * pair_coordinates;
-                pipeline.source.at_block();
+                pipeline.source_.at_block();
                 for (unsigned lane = 0; lane < block_pairs && i + lane < end; lane += width) {
-                    pipeline.source.at_batch(block);
-                    pipeline.screen(block + lane, pipeline.source.numbers(i + lane), lanes_in_use<L>(end - i - lane));
-                    if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
+                    pipeline.source_.at_batch(block);
+                    pipeline.screen(block + lane, pipeline.source_.numbers(i + lane), lanes_in_use<L>(end - i - lane));
+                    if (scratch_.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
                 }
             }
         }
@@ -64,31 +64,31 @@ public:
 private:
     static constexpr unsigned width = Lane<L>::width;
 
-    const SearchParameters& parameters;
-    const SeparationBounds bounds;
-    const double limit;
-    TileScratch& scratch;
-    BlockSource<kind, L> source;
+    const SearchParameters& parameters_;
+    const SeparationBounds bounds_;
+    const double limit_;
+    TileScratch& scratch_;
+    BlockSource<kind, L> source_;
 
-    FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& s)
-        : parameters{*request.parameters}, bounds{parameters.bounds.rho}, limit{time_limit(request.cutoff)}, scratch{s},
-          source{request, s}
+    FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& scratch)
+        : parameters_{*request.parameters}, bounds_{parameters_.bounds.rho}, limit_{time_limit(request.cutoff)}, scratch_{scratch},
+          source_{request, scratch}
     {
     }
 
     FASTCCD_INLINE void screen(const double* coordinates, L pair, unsigned lanes)
     {
         SeparationRecord<L> record;
-        record.r = relative_motion<L>(coordinates, block_pairs, parameters.t_max);
-        const LaneMask<L> farther = farther_along_axis<kind>(record.r, parameters.separation, bounds, record.extents);
+        record.r = relative_motion<L>(coordinates, block_pairs, parameters_.t_max);
+        const LaneMask<L> farther = farther_along_axis<kind>(record.r, parameters_.separation, bounds_, record.extents);
         record.pair = pair;
         const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
-        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(scratch, record.pair, beyond);
+        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(scratch_, record.pair, beyond);
         const unsigned kept = decidable & ~Lane<L>::bits(farther);
         if (3 * static_cast<unsigned>(__builtin_popcount(kept)) >= 2 * width)
             look_first(record, kept);
         else if (kept != 0)
-            push(scratch.separating, kept, record);
+            push(scratch_.separating, kept, record);
     }
 
     /// Takes a batch from the end of a queue; returns the bits of the lanes that are in use.
@@ -105,35 +105,35 @@ private:
     void look_first(unsigned least)
     {
         SeparationRecord<L> record;
-        while (scratch.separating.size >= least) {
-            const unsigned lanes = take_last(scratch.separating, record);
+        while (scratch_.separating.size >= least) {
+            const unsigned lanes = take_last(scratch_.separating, record);
             look_first(record, lanes);
         }
     }
 
     FASTCCD_INLINE void look_first(SeparationRecord<L>& record, unsigned lanes)
     {
-        lanes &= ~Lane<L>::bits(first_look<kind>(record, parameters));
+        lanes &= ~Lane<L>::bits(first_look<kind>(record, parameters_));
         if (lanes == 0) return;
-        push(scratch.advancing, lanes, record);
-        if (scratch.advancing.size >= AdvancingQueue::drain_at) advance(width);
+        push(scratch_.advancing, lanes, record);
+        if (scratch_.advancing.size >= AdvancingQueue::drain_at) advance(width);
     }
 
     void advance(unsigned least)
     {
         SeparationRecord<L> record;
-        while (scratch.advancing.size >= least) {
-            unsigned lanes = take_last(scratch.advancing, record);
+        while (scratch_.advancing.size >= least) {
+            unsigned lanes = take_last(scratch_.advancing, record);
             do {
-                const StepOutcome<L> outcome = step<kind>(record, parameters, limit);
+                const StepOutcome<L> outcome = step<kind>(record, parameters_, limit_);
                 const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
                 if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
                 const unsigned left = lanes & Lane<L>::bits(outcome.left);
-                if (left != 0) leave_undecided(scratch, record.pair, left);
+                if (left != 0) leave_undecided(scratch_, record.pair, left);
                 lanes &= ~(contact | left | Lane<L>::bits(outcome.farther));
                 // Moving pairs to fill a batch costs about a fifth of a step.
             } while (5 * static_cast<unsigned>(__builtin_popcount(lanes)) > 4 * width);
-            if (lanes != 0) push(scratch.advancing, lanes, record);
+            if (lanes != 0) push(scratch_.advancing, lanes, record);
         }
     }
 
@@ -142,10 +142,10 @@ private:
         alignas(64) double times[width];
         Lane<L>::store(times, record.time);
         for_each_pair(record.pair, contact, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
-            scratch.time[i] = times[lane];
-            if (times[lane] < scratch.earliest) scratch.earliest = times[lane];
-            set_bit(scratch.reported, i);
-            if ((proven >> lane & 1) == 0) set_bit(scratch.is_unproven, i);
+            scratch_.time[i] = times[lane];
+            if (times[lane] < scratch_.earliest) scratch_.earliest = times[lane];
+            set_bit(scratch_.reported, i);
+            if ((proven >> lane & 1) == 0) set_bit(scratch_.is_unproven, i);
         });
     }
 };

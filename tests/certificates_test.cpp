@@ -247,19 +247,22 @@ TEST(Certificates, ContactAtTheVeryEndOfAShorterStepIsNotRoundedAway)
 template <PairKind kind>
 class Leaves {
 public:
-    Leaves(const oracle::Pair& pair, const SearchParameters& p) : polynomials{coordinates(pair), p}, parameters{p} {}
+    Leaves(const oracle::Pair& pair, const SearchParameters& parameters)
+        : polynomials_{coordinates(pair), parameters}, parameters_{parameters}
+    {
+    }
 
     /// Left end of the first leaf seen in [0, until] without a certificate; `until` if all have one.
     double first_without_certificate(double until, std::mt19937_64& bits)
     {
-        if (polynomials.apart()) return until;
-        const double w = parameters.leaf_width;
+        if (polynomials_.apart()) return until;
+        const double w = parameters_.leaf_width;
         std::vector<Interval> stack{{0.0, 1.0}};
         while (!stack.empty()) {
             const Interval i = stack.back();
             stack.pop_back();
             if (i.a >= until) return until;
-            if (i.b - i.a > w && (i.b - i.a > 1.0 / 64 || !polynomials.apart(i))) {
+            if (i.b - i.a > w && (i.b - i.a > 1.0 / 64 || !polynomials_.apart(i))) {
                 const double middle = i.a + 0.5 * (i.b - i.a);
                 stack.push_back({middle, i.b});
                 stack.push_back({i.a, middle});
@@ -268,15 +271,16 @@ public:
             const double inside = i.a + std::floor(uniform(bits) * (i.b - i.a) / w) * w;
             for (const double a : {i.a, inside, i.b - w}) {
                 const Interval leaf{a, a + w};
-                if (a < until && !polynomials.apart(leaf) && !portable::apart_by_area_on<kind>(polynomials.coefficients(), leaf.a, leaf.b).value) return a;
+                if (until <= a || polynomials_.apart(leaf)) continue;
+                if (!portable::apart_by_area_on<kind>(polynomials_.coefficients(), leaf.a, leaf.b).value) return a;
             }
         }
         return until;
     }
 
 private:
-    const PairPolynomials<kind> polynomials;
-    const SearchParameters& parameters;
+    const PairPolynomials<kind> polynomials_;
+    const SearchParameters& parameters_;
 };
 
 template <PairKind kind>

@@ -136,7 +136,7 @@ mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.s
 mutant 'times of the tile before stay' simd/lane_results.hpp 's/scratch\.reported\[i \/ 64\] != 0\) clear/scratch.reported[i \/ 64] == 1) clear/' same_bits_test api_test
 mutant 'times never looked at are not cleared' simd/lane_results.hpp 's/if \(scratch\.cleared < count\) \{\s*clear\(/if (scratch.cleared < count) {\n        clear(count - count % 64 + 0 * /' same_bits_test api_test
 mutant 'roots of half a word not seen' simd/lane_results.hpp 's/for \(const std::uint64_t word : words\) any \|= word;/for (int k = 0; k < 4; ++k) any |= words[k];/' same_bits_test api_test
-mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source\.is_in_place\(\)\) keep_waiting\(\);//' wide_lane_test
+mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source_\.is_in_place\(\)\) keep_waiting\(\);//' wide_lane_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
 mutant 'halved edge functions by sign alone' $halves 's/bound = broadcast<L>\(bounds\.quadratic\) \* area/bound = broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test
@@ -147,7 +147,7 @@ mutant 'halved quadratic without the middle' $halves 's/return \{start, first, f
 quarters=kernels/part_certificates.hpp
 mutant 'quarters: the last one not asked' $quarters 's/k < 4 && lanes/k < 3 \&\& lanes/' certificates_test same_bits_test
 mutant 'quarters: of the first half' $quarters 's/less_equal\(high, start\)/less_equal(broadcast<L>(0.5), start)/' certificates_test same_bits_test
-mutant 'quarters of wide leaves' simd/root_stages.hpp 's/parameters\.leaf_width > 0\.25/parameters.leaf_width > 2/' certificates_test
+mutant 'quarters of wide leaves' simd/root_stages.hpp 's/parameters_\.leaf_width > 0\.25/parameters_.leaf_width > 2/' certificates_test
 mutant 'gaps on a part by sign alone' $quarters 's/gap_bound\(bounds, extent\)/broadcast<L>(0.0)/' certificates_test
 
 # ---- The certified search loosened
@@ -160,14 +160,14 @@ mutant 'search: proof by sign alone' $intervals 's/in_lanes<L>\(pair\.cubic_boun
 mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/if \(leaf\.a > 0\.0 && pair/if (leaf.a >= 0.0 \&\& pair/' never_zero_test
 mutant 'search: coarse next to time 0' kernels/touching.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
 mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/false \&\& leaves/' nothing_invented_test never_zero_test
-mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair\.has_area\(s\)//' nothing_invented_test never_zero_test
+mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair_\.has_area\(s\)//' nothing_invented_test never_zero_test
 mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/result.proof == Proof::none \&\& leaves/' nothing_invented_test
 mutant 'search: doubts in the units of each axis' kernels/start_in_doubt.hpp 's/broadcast<L>\(0\.5\) \/ power_of_two\(extent\)/broadcast<L>(1.0)/' same_bits_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
-mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && apart_by_area_on<kind>\(pair, i\.a, i\.b\)\.value\)//' ordered_search_test
+mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && apart_by_area_on<kind>\(pair_, i\.a, i\.b\)\.value\)//' ordered_search_test
 mutant 'several: answers for other intervals' scalar/ordered_search.hpp 's/if \(!\(questions\.at\(k\) == i\)\) continue;//' ordered_search_test
 mutant 'several: the way taken whatever the answers' scalar/ordered_search.hpp 's/if \(\(\(answers \^ apart\)[^;]*;//' ordered_search_test
-mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel\.lanes <= limit/intervals <= limit/' ordered_search_test
+mutant 'several: beyond the cap' scalar/ordered_search.hpp 's/intervals \+ kernel_\.lanes <= limit/intervals <= limit/' ordered_search_test
 mutant 'several: what lies beside the way forgotten' scalar/ordered_search.hpp 's/stack\.push\(beside\[k\]\)/static_cast<void>(beside[k])/' ordered_search_test
 mutant 'several: narrow intervals halved' scalar/ordered_search.hpp 's/meet_at\(target\);\s*if \(narrowest\(way\)\) return way;/meet_at(target);/' ordered_search_test
 mutant 'beside the way: narrow intervals halved' scalar/ordered_search.hpp 's/(intervals \+= ways \+ questions\.size;)\s*if \(narrowest\(way\)\) return way;/$1/' ordered_search_test
@@ -207,7 +207,7 @@ mutant 'touch: lanes, start in doubt, whatever is seen' kernels/start_in_doubt.h
 mutant 'touch: lanes, start in doubt, of other units' kernels/start_in_doubt.hpp 's/look<kind>\(equal, extents\(equal\)/look<kind>(r, extents(r)/' touching_test
 mutant 'touch: lanes, start in doubt left to the search' $in_leaves 's/start_in_doubt = at_start & !found\.reported/start_in_doubt = none/' touching_test
 mutant 'touch: at the start in line by bounds' $touching 's/well_shaped_at<kind>\(pair, zero, zero\)/well_shaped_at<kind>(pair, zero, broadcast<L>(1.0))/' touching_test
-mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair\.well_shaped_at_start\(\)\) touch/touch/' never_zero_test nothing_invented_test touching_test
+mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair_\.well_shaped_at_start\(\)\) touch_/touch_/' never_zero_test nothing_invented_test touching_test
 mutant 'touch: lanes, on where only one leaf is apart' $in_leaves 's/\(found\.apart & !in_next\) \| there\.apart/found.apart/' touching_test
 mutant 'touch: certificates that do not hold' $touching 's/open = open & apart_on<kind>\(leaf, found\.end, end\)/static_cast<void>(0)/' touching_test truth_test stress nothing_invented_test
 mutant 'touch: apart where certificates end' $touching 's/found\.apart = asked & less_equal\(one, until\.end\)/found.apart = asked/' touching_test truth_test
@@ -233,9 +233,9 @@ mutant 'range: short steps scaled as if they were whole' scalar/scaling.cpp 's/w
 mutant 'range: both ends halved' scalar/scaling.cpp 's/coordinate > 0x1p1021 \? 4 : 0/4/' extreme_range_test
 mutant 'range: subnormal times rounded up' kernels/search_parameters.hpp 's/product - 0x1p-1073 : 0\.0/product : 0.0/' extreme_range_test
 mutant 'range: ties of subnormal times left out' scheduler/shared_best.hpp 's/memory_order_relaxed\) \+ 0x1p-1072/memory_order_relaxed)/' collision_free_step_test
-mutant 'roots: sign after a cluster from far away' scalar/contact_roots.hpp 's/if \(open\) look_behind_cluster\(i\);//' root_counts_test
+mutant 'roots: sign after a cluster from far away' scalar/contact_roots.hpp 's/if \(open_\) look_behind_cluster\(i\);//' root_counts_test
 mutant 'roots: sign before a cluster from far away' scalar/contact_roots.hpp 's/look_ahead_of_cluster\(i\.a\);//' root_counts_test
-mutant 'roots: clusters add up' scalar/contact_roots.hpp 's/tangential = true;/odd += 2;/' root_counts_test
+mutant 'roots: clusters add up' scalar/contact_roots.hpp 's/tangential_ = true;/odd_ += 2;/' root_counts_test
 mutant 'range: roots as coarse as times' scalar/contact_roots.hpp 's/widest_leaf = 0x1p-30/widest_leaf = 1/' extreme_range_test
 
 # ---- Area inclusion loosened
@@ -264,16 +264,16 @@ mutant 'lanes: first leaf decided' $roots 's/leaf\.inner & bracket\.certain/brac
 mutant 'lanes: crossing not asked for quickly' $roots 's/in_leaf & around\.present/around.present/' certificates_test same_bits_test
 mutant 'lanes: crossing not asked for' $roots 's/crossing & Lane<L>::bits\(inclusion\.present\)/lanes & Lane<L>::bits(inclusion.present)/' certificates_test same_bits_test
 mutant 'lanes: crossing by sign alone, quickly' $roots 's/less\(root\.threshold, min\(abs\(at_left\), abs\(at_right\)\)\) & //' certificates_test same_bits_test wide_lane_test stress
-mutant 'lanes: crossing by sign alone' $roots 's/cubic_bound_lanes\(root\.r, root\.scale\.volume, parameters\.bounds\)/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
+mutant 'lanes: crossing by sign alone' $roots 's/cubic_bound_lanes\(root\.r, root\.scale\.volume, parameters_\.bounds\)/broadcast<L>(0.0)/' certificates_test same_bits_test wide_lane_test stress
 mutant 'lanes: present by sign alone' kernels/projected_inclusion.hpp 's/less\(bound, low\) \| less\(high, negated\(bound\)\)/less(broadcast<L>(0.0), low) | less(high, broadcast<L>(0.0))/' certificates_test same_bits_test
 mutant 'lanes: across one line of two' kernels/projected_inclusion.hpp 's/(one_sign\(bound, pk, negated\(tk\)\)) &/$1 |/' certificates_test same_bits_test
 mutant 'lanes: aside taken for across' kernels/projected_inclusion.hpp 's/one_sign\(bound, pk, negated\(tk\)\)/one_sign(bound, pk, tk)/' certificates_test same_bits_test
-mutant 'lanes: roots after a contact not counted' $roots 's/parameters\.count_roots \? 0 : contact/contact/' same_bits_test
-mutant 'lanes: later roots not sought' $roots 's/parameters\.count_roots \? 0 : contact/parameters.count_roots ? 0 : ~0u/' same_bits_test
+mutant 'lanes: roots after a contact not counted' $roots 's/parameters_\.count_roots \? 0 : contact/contact/' same_bits_test
+mutant 'lanes: later roots not sought' $roots 's/parameters_\.count_roots \? 0 : contact/parameters_.count_roots ? 0 : ~0u/' same_bits_test
 mutant 'lanes: second root sought in the first piece' $roots 's/select<L>\(decided, second_low, root\.low\)/root.low/' same_bits_test certificates_test
 mutant 'lanes: second root beside an undecided first lost' $roots 's/both = undecided & second;/both = 0;/' same_bits_test certificates_test wide_lane_test stress
-mutant 'lanes: third root sought in the second piece' $roots 's/later_high\[i\]\);(\s+root\.high = Lane<L>::load\(&scratch\.search\.end)/later_low[i]);$1/' same_bits_test certificates_test
-mutant 'lanes: early cutoff too early' $pipeline 's/\(cutoff \+ 2 \* parameters\.leaf_width\) \* \(1\.0 \+ 0x1p-22\)/0.5 * cutoff/' indexed_test same_bits_test
+mutant 'lanes: third root sought in the second piece' $roots 's/later_high\[i\]\);(\s+root\.high = Lane<L>::load\(&scratch_\.search\.end)/later_low[i]);$1/' same_bits_test certificates_test
+mutant 'lanes: early cutoff too early' $pipeline 's/\(cutoff_ \+ 2 \* parameters_\.leaf_width\) \* \(1\.0 \+ 0x1p-22\)/0.5 * cutoff_/' indexed_test same_bits_test
 
 # ---- Minimum separation
 separation=kernels/separation_bound.hpp
@@ -291,7 +291,7 @@ mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & 
 # ---- Totals
 tile=scheduler/tile_runner.cpp
 mutant 'totals: first contact of the lanes not seen' simd/lane_results.hpp 's/scratch\.earliest = lanes\[0\]/scratch.earliest = __builtin_inf()/' api_test same_bits_test
-mutant 'totals: first separation of the lanes not seen' simd/separation_pipeline.hpp 's/if \(times\[lane\] < scratch\.earliest\) scratch\.earliest = times\[lane\];//' api_test separation_bits_test
+mutant 'totals: first separation of the lanes not seen' simd/separation_pipeline.hpp 's/if \(times\[lane\] < scratch_\.earliest\) scratch_\.earliest = times\[lane\];//' api_test separation_bits_test
 mutant 'totals: first contact of the search not seen' $tile 's/earliest = std::min\(earliest, toi\);//' api_test same_bits_test
 mutant 'totals: invalid pairs are contacts' $tile 's/reported - invalid/reported/' api_test
 mutant 'totals: invalid pairs are proven' $tile 's/proven - invalid/proven/' api_test
@@ -316,7 +316,7 @@ following=scalar/following_direction.hpp
 mutant 'separation: heights while following = 0' $separation 's/vertex_face \? rho \+ 8 : 2 \* rho \+ 18\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test
 mutant 'separation: nothing follows' scalar/separation_search.cpp 's/outcome\.left\.value && follow/false \&\& follow/' separation_test separation_bits_test
 mutant 'separation: lanes follow nothing' kernels/separation_steps.hpp 's/most_lane_looks = 64/most_lane_looks = 1e9/' separation_test separation_bits_test
-mutant 'separation: lanes keep what is to be followed' simd/separation_pipeline.hpp 's/if \(left != 0\) leave_undecided\(scratch, record\.pair, left\);//' separation_bits_test
+mutant 'separation: lanes keep what is to be followed' simd/separation_pipeline.hpp 's/if \(left != 0\) leave_undecided\(scratch_, record\.pair, left\);//' separation_bits_test
 mutant 'separation: following, middle not asked' $following 's/k < 5; \+\+k\) all/k < 5; k += 2) all/' error_bounds_test
 mutant 'separation: following, d not asked for' $following 's/parameters\.threshold \* length\(v\) \+/0.0 * length(v) +/' error_bounds_test
 mutant 'separation: following goes over the window' scalar/separation_search.cpp 's/pair\.time = past_window\(pair, end\)/pair.time = past_window(pair, end + stretch)/' separation_test
