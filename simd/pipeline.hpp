@@ -47,14 +47,14 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 template <PairKind kind, class L>
 class Pipeline {
 public:
-    static void run_tile(const TileRequest& request, TileScratch& scratch_)
+    static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
-        Pipeline pipeline{request, scratch_};
-        clear_results<L>(scratch_, request.count);
-        scratch_.screened.size = 0;
+        Pipeline pipeline{request, scratch};
+        clear_results<L>(scratch, request.count);
+        scratch.screened.size = 0;
         for (std::size_t i = 0; i < pipeline.source_.size(); i += group_pairs) {
             const std::size_t left = pipeline.source_.size() - i, count = left < group_pairs ? left : group_pairs;
-            if (scratch_.dense) {
+            if (scratch.dense) {
                 pipeline.screen_dense_group(i, count);
             } else {
                 pipeline.screen_sparse_group(i, count, request.preferences);
@@ -63,7 +63,7 @@ public:
         }
         pipeline.compare_screened(true);
         pipeline.root_stages_.finish();
-        mark_reported<L>(scratch_, request.count);
+        mark_reported<L>(scratch, request.count);
     }
 
 private:

@@ -38,11 +38,11 @@ FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit 
 template <PairKind kind, class L>
 class SeparationPipeline {
 public:
-    static void run_tile(const TileRequest& request, TileScratch& scratch_)
+    static void run_tile(const TileRequest& request, TileScratch& scratch)
     {
-        SeparationPipeline pipeline{request, scratch_};
-        clear_results<L>(scratch_, request.count);
-        scratch_.separating.size = scratch_.advancing.size = 0;
+        SeparationPipeline pipeline{request, scratch};
+        clear_results<L>(scratch, request.count);
+        scratch.separating.size = scratch.advancing.size = 0;
         const std::size_t size = pipeline.source_.size();
         for (std::size_t first = 0; first < size; first += group_pairs) {
             const double* const blocks = pipeline.source_.group(first);
@@ -53,7 +53,7 @@ public:
                 for (unsigned lane = 0; lane < block_pairs && i + lane < end; lane += width) {
                     pipeline.source_.at_batch(block);
                     pipeline.screen(block + lane, pipeline.source_.numbers(i + lane), lanes_in_use<L>(end - i - lane));
-                    if (scratch_.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
+                    if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
                 }
             }
         }

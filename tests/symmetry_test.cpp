@@ -2,7 +2,7 @@
 // exchanged, all mirrored.
 //
 // Times may differ by rounding: it is another vertex that the others are relative to. So may the verdict on a near miss within rounding
-// (README.md, Accuracy); contact is reported in any order.
+// (README.md, Accuracy), and with it the time of a pair that comes in contact later; contact is reported in any order.
 #include <gtest/gtest.h>
 
 #include <array>
