@@ -145,7 +145,6 @@ struct TouchAnswers {
     alignas(64) double time[block_pairs];  ///< Answered, of the pairs reported.
     unsigned reported, proven;             ///< Bits of the pairs that are reported, and of the proven ones of them.
     unsigned apart;                        ///< Of those that are not reported at all.
-    unsigned start_in_doubt;               ///< Of those in contact at time 0, unless start_in_doubt.hpp has it otherwise.
 };
 
 using TouchingBlock = void(PairKind, const double* block, const SearchParameters&, TouchAnswers&);
@@ -156,8 +155,7 @@ struct KernelTable {
     /// lanes found of an undecided pair is to be overwritten.
     void (*run_tile)(const TileRequest&, TileScratch&);
     TouchingBlock* contact_in_leaves;  ///< Of pairs that may be in contact in the leaf asked for or, if that is apart, in the next one,
-    TouchingBlock* contact_anywhere;   ///< of pairs that may be in any, and
-    TouchingBlock* start_in_doubt;     ///< of those whose start that leaves in doubt: who is not reported here may still be in contact anywhere.
+    TouchingBlock* contact_anywhere;   ///< and of pairs that may be in any.
     /// For the certified search of one pair; null if intervals are better looked at one by one.
     IntervalKernel intervals;
 };

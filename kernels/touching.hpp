@@ -4,12 +4,13 @@
 //
 // Certificates may lead through such a leaf, each from the end of the last one. Or they end, and where the pair meets right after that, as
 // far as rounding can tell, no part that contains this time has one of the three certificates (nor eq. 7, but for rounding): halved down to
-// the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, hardly any other search would clear
-// it either. So it is reported at once, by the search and, with the same bits, by lanes; with the end of the certificates as lower bound.
+// the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, or directions show no distance either
+// (no_distance.hpp), hardly any other search would clear it. So it is reported at once, by the search and, with the same bits, by lanes; with the end of the certificates as lower bound.
 // From the leaf's own polynomials (restriction.hpp), by which hardly a pair is in between.
 #pragma once
 
 #include <last_certificate.hpp>
+#include <no_distance.hpp>
 #include <restriction.hpp>
 #include <search_parameters.hpp>
 
@@ -108,7 +109,7 @@ FASTCCD_INLINE LaneMask<L> contact_proven_near(const PolynomialsOf<L>& pair, L s
 }
 
 /// Of what is computed from the pair at one time: how much smaller lengths may be than the longest one, and areas than the largest one of
-/// the step, for a pair that counts as well shaped. A choice, not a bound: who is well shaped is spared a look.
+/// the step, for a pair that counts as well shaped. A choice, not a bound: who is well shaped is spared a look along a direction.
 inline constexpr double least_share = 0x1p-5;
 
 /// Whether the area of the face, or of the parallelogram of both edges, is no small part of the terms of edge functions, in some projection
@@ -189,13 +190,28 @@ FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s
     return shaped;
 }
 
-/// Whether a pair in contact at time 0, as far as its certificates tell (in_contact_at_start), needs no other look. Its vertices are where they
-/// were given then, so what is zero may be asked to be just that: distances along directions tell apart what is not.
+/// Whether a pair that meets at s, as far as its certificates tell, and is apart until `before`, is in contact for all that computed positions
+/// tell. If its shape amplifies rounding, eq. 7 at s and the direction in which it is farthest apart may still tell; and the search along
+/// directions would begin where certificates end: unless that gets on, this is its answer.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> well_shaped_at_start(const PairCoefficientsOf<L>& pair)
+FASTCCD_INLINE LaneMask<L> counts_as_contact_at(const PairCoefficientsOf<L>& pair, L s, L before, const ErrorBounds& bounds)
+{
+    const LaneMask<L> shaped = well_shaped_at<kind>(pair, s, broadcast<L>(1.0));
+    LaneMask<L> counts = !shaped;
+    if (Lane<L>::bits(counts) != 0) counts = counts & !apart_by_area_on<kind>(pair, s, s);
+    for (const L& time : {s, before})
+        if (Lane<L>::bits(counts) != 0) counts = counts & no_distance_at<kind>(motion_of<L>(pair), time, bounds);
+    return shaped | counts;
+}
+
+/// The same of a pair in contact at time 0 (in_contact_at_start). Its vertices are where they were given then, so what is zero may be asked to
+/// be just that: distances along directions tell apart what is not.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> counts_as_contact_at_start(const PairCoefficientsOf<L>& pair, const ErrorBounds& bounds)
 {
     const L zero = broadcast<L>(0.0);
-    return well_shaped_at<kind>(pair, zero, zero);
+    const LaneMask<L> shaped = well_shaped_at<kind>(pair, zero, zero);
+    return Lane<L>::bits(!shaped) == 0 ? shaped : shaped | no_distance_at<kind>(motion_of<L>(pair), zero, bounds);
 }
 
 /// The start of the leaf that holds `time`.
@@ -222,7 +238,7 @@ struct Touch {
 
 /// In `leaf`, which is `pair` over it (restriction.hpp); of the lanes in `asked`. Shapes and areas are told from the whole step.
 template <PairKind kind, class L>
-FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoefficientsOf<L>& pair, LaneMask<L> asked)
+FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoefficientsOf<L>& pair, const ErrorBounds& bounds, LaneMask<L> asked)
 {
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     Touch<L> found{less(one, zero), less(one, zero), leaf.origin, leaf.origin, zero};
@@ -230,7 +246,7 @@ FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoeffic
         const L time = time_in_step(leaf, likely.time), until = earlier_in_step(leaf, likely.before);
         LaneMask<L> present = asked & likely.expected & less(zero, until);
         if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(leaf, likely.time);
-        if (Lane<L>::bits(present) != 0) present = present & well_shaped_at<kind>(pair, time, one);
+        if (Lane<L>::bits(present) != 0) present = present & counts_as_contact_at<kind>(pair, time, until, bounds);
         if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, leaf.origin, leaf.origin + leaf.duration);
         if (Lane<L>::bits(present) != 0 && !is_apart_before)
             present = present & (less_equal(likely.before, zero) | apart_on<kind>(leaf, zero, likely.before));

@@ -30,7 +30,7 @@ public:
         search_.intervals = 1;
         if (pair_.in_contact_at_start(parameters_.leaf_width)) {
             leaf_of_answer_ = {0.0, parameters_.leaf_width};
-            if (pair_.well_shaped_at_start()) touch_ = 0.0;
+            if (pair_.counts_as_contact_at_start(parameters_.bounds)) touch_ = 0.0;
             return 0.0;
         }
         if (is_leaf(whole)) return pair_.apart(whole) ? none : contact_in_leaf(whole);
@@ -63,7 +63,7 @@ public:
         const PairCoefficients inside = pair_.in_leaf(leaf);
         std::optional<double> likely;
         if (leaf.width() >= narrowest_touched) {
-            const Touch<double> found = pair_.touch(inside);
+            const Touch<double> found = pair_.touch(inside, parameters_.bounds);
             likely = found.likely;
             if (found.apart.value) return none;
             if (found.present.value) {
@@ -105,7 +105,7 @@ public:
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
     /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which fewer than
-    /// that many have not come to. Not where it touches: that has been looked at, in another way (well_shaped_at).
+    /// that many have not come to. Not where it touches: that has been looked at (counts_as_contact_at).
     [[nodiscard]] bool in_doubt(double s) const
     {
         return touch_ == none && (search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));

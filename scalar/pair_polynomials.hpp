@@ -49,7 +49,10 @@ public:
     [[nodiscard]] bool included(Interval i) const { return included_on<kind>(pair_, Between<double>{i.a, i.b}).value; }
 
     // See touching.hpp.
-    [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf) const { return touch_in<kind>(leaf, pair_, less_equal(0.0, 1.0)); }
+    [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf, const ErrorBounds& bounds) const
+    {
+        return touch_in<kind>(leaf, pair_, bounds, less_equal(0.0, 1.0));
+    }
     [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair_, Between<double>{i.a, i.b}).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair_, s).value; }
     [[nodiscard]] bool zero_at_start() const { return FASTCCD_KERNEL_NAMESPACE::zero_at_start(pair_).value; }
@@ -57,7 +60,10 @@ public:
     {
         return FASTCCD_KERNEL_NAMESPACE::in_contact_at_start<kind>(pair_, leaf_width).value;
     }
-    [[nodiscard]] bool well_shaped_at_start() const { return FASTCCD_KERNEL_NAMESPACE::well_shaped_at_start<kind>(pair_).value; }
+    [[nodiscard]] bool counts_as_contact_at_start(const ErrorBounds& bounds) const
+    {
+        return FASTCCD_KERNEL_NAMESPACE::counts_as_contact_at_start<kind>(pair_, bounds).value;
+    }
     [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair_, s).value; }
 
     /// For kernels that take several intervals at a time.

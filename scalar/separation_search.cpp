@@ -8,9 +8,9 @@
 
 #include <following_direction.hpp>
 #include <interval_certificates.hpp>
+#include <no_distance.hpp>
 #include <scaling.hpp>
 #include <separation_steps.hpp>
-#include <start_in_doubt.hpp>
 
 namespace fastccd::scalar {
 

@@ -11,10 +11,9 @@ namespace {
 /// Decided by one call, one pair a lane.
 class Block {
 public:
-    /// `doubts`: for pairs whose start is in doubt, if the kernel says so of any; `others`: for those that are not answered; if there is
-    /// none, they are for the search.
-    Block(const Job& job, std::size_t first, TileScratch& scratch, TouchingBlock* kernel, Block* doubts, Block* others)
-        : job_{job}, first_{first}, scratch_{scratch}, kernel_{kernel}, doubts_{doubts}, others_{others}
+    /// `others`: for pairs that are not answered; if there is none, they are for the search.
+    Block(const Job& job, std::size_t first, TileScratch& scratch, TouchingBlock* kernel, Block* others)
+        : job_{job}, first_{first}, scratch_{scratch}, kernel_{kernel}, others_{others}
     {
     }
 
@@ -45,8 +44,6 @@ public:
                 if (!has(answers_.proven)) scratch_.is_unproven[i / 64] |= bit;
             } else if (has(answers_.apart)) {
                 continue;
-            } else if (has(answers_.start_in_doubt)) {
-                doubts_->take(i);
             } else if (others_ != nullptr) {
                 others_->take(i);
             } else {
@@ -61,7 +58,6 @@ private:
     std::size_t first_;
     TileScratch& scratch_;
     TouchingBlock* kernel_;
-    Block* doubts_;
     Block* others_;
     alignas(64) double coordinates_[pair_coordinates][block_pairs];
     TouchAnswers answers_;
@@ -80,17 +76,15 @@ void decide_touching(const Job& job, std::size_t first, std::size_t count, TileS
         return;
     }
     for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.may_touch[w] &= ~scratch.is_undecided[w];
-    Block in_doubt{job, first, scratch, job.kernels->start_in_doubt, nullptr, nullptr};
-    Block anywhere{job, first, scratch, job.kernels->contact_anywhere, &in_doubt, nullptr};
+    Block anywhere{job, first, scratch, job.kernels->contact_anywhere, nullptr};
     const bool both = job.parameters.leaf_width >= narrowest_looked_beyond;
-    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, nullptr, both ? &anywhere : nullptr};
+    Block in_leaves{job, first, scratch, job.kernels->contact_in_leaves, both ? &anywhere : nullptr};
     for_each_bit(scratch.may_touch, count, [&](std::size_t i) {
         // A contact that is proven before it needs no other.
         if (!(scratch.time[i] < scratch.touch_time[i])) (scratch.touch_time[i] > 0.0 ? in_leaves : anywhere).take(i);
     });
     in_leaves.decide();
     anywhere.decide();
-    in_doubt.decide();
 }
 
 }  // namespace fastccd

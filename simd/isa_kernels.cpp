@@ -59,6 +59,6 @@ constexpr IntervalKernel interval_kernel()
 
 extern const KernelTable table;
 const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, touching_block<KernelLane, false>, touching_block<KernelLane, true>,
-                        start_in_doubt_block<KernelLane>, interval_kernel<KernelLane>()};
+                        interval_kernel<KernelLane>()};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -7,7 +7,6 @@
 
 #include <kernel_table.hpp>
 #include <search_coefficients.hpp>
-#include <start_in_doubt.hpp>
 #include <touching.hpp>
 #include <unscaled_pairs.hpp>
 
@@ -75,10 +74,10 @@ struct Contacts {
 
 /// What the search finds in the leaves that start at `left`.
 template <PairKind kind, class L>
-__attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>& pair, L left, L width, LaneMask<L> asked)
+__attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>& pair, L left, const SearchParameters& parameters, LaneMask<L> asked)
 {
     const Throughout<L> all;
-    PolynomialsOf<L> leaf = restricted_to<kind>(pair, left, left + width);
+    PolynomialsOf<L> leaf = restricted_to<kind>(pair, left, left + broadcast<L>(parameters.leaf_width));
     const LaneMask<L> apart = asked & apart_on<kind>(leaf, all);
     const LaneMask<L> certain = contact_proven_on<kind>(leaf, all), proven = asked & certain & less(broadcast<L>(0.0), left);
     const LaneMask<L> open = asked & !apart & !proven;
@@ -86,7 +85,7 @@ __attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>
     if (Lane<L>::bits(open) == 0) return found;
 
     add_rounding_on_parts<kind>(leaf);
-    const Touch<L> touch = touch_in<kind>(leaf, pair, open);
+    const Touch<L> touch = touch_in<kind>(leaf, pair, parameters.bounds, open);
     found.apart = apart | touch.apart;
     if (Lane<L>::bits(touch.present) == 0) return found;
     // The search comes to this leaf if nothing around it has a certificate: if the pair meets, or if the leaf has none even by less than
@@ -105,13 +104,13 @@ __attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>
 
 /// What the search finds in the leaf that starts at `left` or, if that is apart, in the next one.
 template <PairKind kind, class L>
-FASTCCD_INLINE Contacts<L> answer_in_two_leaves(const PairCoefficientsOf<L>& pair, L left, L width, LaneMask<L> asked)
+FASTCCD_INLINE Contacts<L> answer_in_two_leaves(const PairCoefficientsOf<L>& pair, L left, const SearchParameters& parameters, LaneMask<L> asked)
 {
-    const L one = broadcast<L>(1.0), next = left + width;
-    Contacts<L> found = answer_in_leaf<kind>(pair, left, width, asked & less_equal(next, one));
+    const L one = broadcast<L>(1.0), width = broadcast<L>(parameters.leaf_width), next = left + width;
+    Contacts<L> found = answer_in_leaf<kind>(pair, left, parameters, asked & less_equal(next, one));
     const LaneMask<L> in_next = found.apart & less(next, one);
     if (Lane<L>::bits(in_next) == 0) return found;
-    const Contacts<L> there = answer_in_leaf<kind>(pair, next, width, in_next);
+    const Contacts<L> there = answer_in_leaf<kind>(pair, next, parameters, in_next);
     return {found.reported | there.reported, found.proven | there.proven, (found.apart & !in_next) | there.apart,
             select<L>(there.reported, there.time, found.time)};
 }
@@ -151,36 +150,21 @@ FASTCCD_INLINE SearchedPairs<L> searched_pairs(const double* coordinates, unsign
 /// each of 50 levels for 24 certificates and six leaves.
 inline constexpr int most_leaves_asked = 3;
 
-/// See TouchAnswers.
-template <class L>
-struct TouchOfPairs {
-    Contacts<L> contacts;
-    LaneMask<L> start_in_doubt;
-};
-
 /// Pairs that may be in contact in any leaf.
 template <PairKind kind, class L>
-FASTCCD_INLINE TouchOfPairs<L> contact_anywhere(const SearchedPairs<L>& searched, const SearchParameters& parameters)
+FASTCCD_INLINE Contacts<L> contact_anywhere(const SearchedPairs<L>& searched, const SearchParameters& parameters)
 {
     const PairCoefficientsOf<L>& pair = searched.pair;
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), width = broadcast<L>(parameters.leaf_width);
     const LaneMask<L> none = less(one, zero);
-    TouchOfPairs<L> answers{{none, none, searched.apart, zero}, none};
-    Contacts<L>& found = answers.contacts;
-    const auto add = [&](const Contacts<L>& there) FASTCCD_INLINE_LAMBDA {
-        found.reported = found.reported | there.reported;
-        found.proven = found.proven | there.proven;
-        found.time = select<L>(there.reported, there.time, found.time);
-    };
-
+    Contacts<L> found{none, none, searched.apart, zero};
     LaneMask<L> open = searched.open;
     const LaneMask<L> at_start = open & in_contact_at_start<kind>(pair, width);
     if (Lane<L>::bits(at_start) != 0) {
-        found.reported = at_start & well_shaped_at_start<kind>(pair);
-        answers.start_in_doubt = at_start & !found.reported;
+        found.reported = at_start & counts_as_contact_at_start<kind>(pair, parameters.bounds);
         open = open & !at_start;
     }
-    if (Lane<L>::bits(open) == 0) return answers;
+    if (Lane<L>::bits(open) == 0) return found;
 
     const PolynomialsOf<L> sure = with_margins<kind>(pair);
     L time = zero;
@@ -189,40 +173,28 @@ FASTCCD_INLINE TouchOfPairs<L> contact_anywhere(const SearchedPairs<L>& searched
         found.apart = found.apart | (open & less_equal(one, time));
         open = open & less(time, one);
         if (k == most_leaves_asked || Lane<L>::bits(open) == 0) break;
-        const Contacts<L> there = answer_in_two_leaves<kind>(pair, time, width, open);
-        add(there);
+        const Contacts<L> there = answer_in_two_leaves<kind>(pair, time, parameters, open);
+        found.reported = found.reported | there.reported;
+        found.proven = found.proven | there.proven;
+        found.time = select<L>(there.reported, there.time, found.time);
         open = open & there.apart;
         time = min(time + broadcast<L>(2.0) * width, one);
     }
-    return answers;
-}
-
-/// Calls answer<kind>(number of the first pair) for each batch of a block.
-template <class L, class Answer>
-FASTCCD_INLINE void for_each_batch(PairKind kind, Answer answer)
-{
-    for (unsigned i = 0; i < block_pairs; i += Lane<L>::width) {
-        if (kind == PairKind::vertex_face)
-            answer.template operator()<PairKind::vertex_face>(i);
-        else
-            answer.template operator()<PairKind::edge_edge>(i);
-    }
+    return found;
 }
 
 template <class L, bool anywhere>
 void touching_block(PairKind kind, const double* block, const SearchParameters& parameters, TouchAnswers& answers)
 {
-    answers.reported = answers.proven = answers.apart = answers.start_in_doubt = 0;
+    answers.reported = answers.proven = answers.apart = 0;
     const auto answer = [&]<PairKind pair_kind>(unsigned first) FASTCCD_INLINE_LAMBDA {
         const SearchedPairs<L> searched = searched_pairs<pair_kind, L>(block, first, parameters);
         Contacts<L> found;
         if constexpr (anywhere) {
-            const TouchOfPairs<L> touch = contact_anywhere<pair_kind>(searched, parameters);
-            found = touch.contacts;
-            answers.start_in_doubt |= Lane<L>::bits(touch.start_in_doubt) << first;
+            found = contact_anywhere<pair_kind>(searched, parameters);
         } else {
-            const L left = Lane<L>::load(&answers.left[first]), width = broadcast<L>(parameters.leaf_width);
-            found = answer_in_two_leaves<pair_kind>(searched.pair, left, width, searched.open);
+            const L left = Lane<L>::load(&answers.left[first]);
+            found = answer_in_two_leaves<pair_kind>(searched.pair, left, parameters, searched.open);
             found.apart = searched.apart;
         }
         Lane<L>::store(&answers.time[first], found.time);
@@ -230,18 +202,12 @@ void touching_block(PairKind kind, const double* block, const SearchParameters& 
         answers.proven |= Lane<L>::bits(found.proven) << first;
         answers.apart |= Lane<L>::bits(found.apart) << first;
     };
-    for_each_batch<L>(kind, answer);
-}
-
-template <class L>
-void start_in_doubt_block(PairKind kind, const double* block, const SearchParameters& parameters, TouchAnswers& answers)
-{
-    answers.reported = answers.proven = answers.apart = answers.start_in_doubt = 0;
-    for_each_batch<L>(kind, [&]<PairKind pair_kind>(unsigned first) FASTCCD_INLINE_LAMBDA {
-        const RelativeMotion<L> r = relative_motion<L>(block + first, block_pairs, parameters.t_max);
-        Lane<L>::store(&answers.time[first], broadcast<L>(0.0));
-        answers.reported |= Lane<L>::bits(stays_in_contact_at_start<pair_kind>(r, parameters.bounds)) << first;
-    });
+    for (unsigned i = 0; i < block_pairs; i += Lane<L>::width) {
+        if (kind == PairKind::vertex_face)
+            answer.template operator()<PairKind::vertex_face>(i);
+        else
+            answer.template operator()<PairKind::edge_edge>(i);
+    }
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

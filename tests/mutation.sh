@@ -162,7 +162,7 @@ mutant 'search: coarse next to time 0' kernels/touching.hpp 's/finest_at_zero = 
 mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/false \&\& leaves/' nothing_invented_test never_zero_test
 mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair_\.has_area\(s\)//' nothing_invented_test never_zero_test
 mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/result.proof == Proof::none \&\& leaves/' nothing_invented_test
-mutant 'search: doubts in the units of each axis' kernels/start_in_doubt.hpp 's/broadcast<L>\(0\.5\) \/ power_of_two\(extent\)/broadcast<L>(1.0)/' same_bits_test
+mutant 'search: doubts in the units of each axis' kernels/no_distance.hpp 's/broadcast<L>\(0\.5\) \/ power_of_two\(extent\)/broadcast<L>(1.0)/' same_bits_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
 mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && apart_by_area_on<kind>\(pair_, i\.a, i\.b\)\.value\)//' ordered_search_test
 mutant 'several: answers for other intervals' scalar/ordered_search.hpp 's/if \(!\(questions\.at\(k\) == i\)\) continue;//' ordered_search_test
@@ -189,7 +189,7 @@ mutant 'value margin of gaps = 0' $meeting 's/\(2 \* 2\.5 \+ 1\.2\) \* ErrorBoun
 touching=kernels/touching.hpp in_leaves=simd/touching_pairs.hpp
 mutant 'touch: whether they meet or not' $touching 's/present = present & meets_at<kind>\(leaf, likely\.time\)/static_cast<void>(0)/' touching_test truth_test
 mutant 'touch: not certain to be apart before' $touching 's/present = present & \(less_equal\(likely\.before, zero\) \| apart_on<kind>\(leaf, zero, likely\.before\)\)/static_cast<void>(0)/' touching_test truth_test stress
-mutant 'touch: of any shape' $touching 's/present = present & well_shaped_at<kind>\(pair, time, one\)/static_cast<void>(0)/' truth_test touching_test nothing_invented_test
+mutant 'touch: of any shape' $touching 's/present = present & counts_as_contact_at<kind>\(pair, time, until, bounds\)/static_cast<void>(0)/' truth_test touching_test nothing_invented_test
 mutant 'touch: half a leaf before' $touching 's/ & less\(time - within, broadcast<L>\(0\.5\)\)//' touching_test
 mutant 'touch: area of edges by their sum' $touching 's/area = area - value/area = area + value/' touching_test
 mutant 'touch: certificates not looked at' $touching 's/look_at\(likely, true\);//' touching_test
@@ -202,12 +202,14 @@ mutant 'touch: lanes, apart before not asked (root)' simd/root_stages.hpp 's/lea
 mutant 'touch: lanes, apart before not asked (certificates)' $in_leaves 's/open = open & apart_on<kind>\(sure, time, end\)/static_cast<void>(0)/' touching_test
 mutant 'touch: lanes, certificates without margins' $in_leaves 's/set_bounds<kind>\(sure, pair, 1\.0\)/set_bounds<kind>(sure, pair, 0.0)/' touching_test
 mutant 'touch: lanes, certificates with gaps between them' $in_leaves 's/time = select<L>\(open, left, time\)/time = select<L>(open, end, time)/' touching_test
-mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/at_start & well_shaped_at_start<kind>\(pair\)/at_start/' touching_test same_bits_test
-mutant 'touch: lanes, start in doubt, whatever is seen' kernels/start_in_doubt.hpp 's/return !certified_at\(sight\.reach, zero\)/return less_equal(zero, zero)/' touching_test
-mutant 'touch: lanes, start in doubt, of other units' kernels/start_in_doubt.hpp 's/look<kind>\(equal, extents\(equal\)/look<kind>(r, extents(r)/' touching_test
-mutant 'touch: lanes, start in doubt left to the search' $in_leaves 's/start_in_doubt = at_start & !found\.reported/start_in_doubt = none/' touching_test
+mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/at_start & counts_as_contact_at_start<kind>\(pair, parameters\.bounds\)/at_start/' touching_test same_bits_test
+mutant 'touch: thin pairs, whatever eq. 7 says' $touching 's/counts = counts & !apart_by_area_on<kind>\(pair, s, s\)/static_cast<void>(0)/' touching_test nothing_invented_test
+mutant 'touch: thin pairs, whatever directions say' $touching 's/counts = counts & no_distance_at<kind>\(motion_of<L>\(pair\), time, bounds\)/static_cast<void>(0)/' touching_test nothing_invented_test truth_test
+mutant 'touch: thin pairs, where certificates end not asked' $touching 's/\{s, before\}/{s}/' touching_test nothing_invented_test truth_test
+mutant 'touch: thin pairs, in units that they are not in' kernels/no_distance.hpp 's/look<kind>\(equal, extents\(equal\)/look<kind>(r, extents(r)/' touching_test same_bits_test
+mutant 'touch: thin pairs at the start, whatever directions say' $touching 's/shaped : shaped \| no_distance_at<kind>\(motion_of<L>\(pair\), zero, bounds\)/shaped : less_equal(zero, zero)/' touching_test never_zero_test nothing_invented_test
 mutant 'touch: at the start in line by bounds' $touching 's/well_shaped_at<kind>\(pair, zero, zero\)/well_shaped_at<kind>(pair, zero, broadcast<L>(1.0))/' touching_test
-mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair_\.well_shaped_at_start\(\)\) touch_/touch_/' never_zero_test nothing_invented_test touching_test
+mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair_\.counts_as_contact_at_start\(parameters_\.bounds\)\) touch_/touch_/' never_zero_test nothing_invented_test touching_test
 mutant 'touch: lanes, on where only one leaf is apart' $in_leaves 's/\(found\.apart & !in_next\) \| there\.apart/found.apart/' touching_test
 mutant 'touch: certificates that do not hold' $touching 's/open = open & apart_on<kind>\(leaf, found\.end, end\)/static_cast<void>(0)/' touching_test truth_test stress nothing_invented_test
 mutant 'touch: apart where certificates end' $touching 's/found\.apart = asked & less_equal\(one, until\.end\)/found.apart = asked/' touching_test truth_test

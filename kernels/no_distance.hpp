@@ -1,7 +1,6 @@
-// Pairs that seem to be in contact at time 0, of a shape that amplifies rounding: edges in line, or a face without area, but for rounding.
-//
-// The search with a separation goes on from there, without any separation (scalar/certified_search.cpp). For most its first look, by which
-// nothing is proven to be apart, is its last, too.
+// Pairs that seem to meet, of a shape that amplifies rounding: edges in line or nearly parallel, or a face without area, but for rounding.
+// Distances along a direction tell apart what computed positions tell apart, and where they tell nothing at the time from which the search
+// along directions (scalar/separation_search.cpp) would go on, it ends there, too.
 #pragma once
 
 #include <separation_certificate.hpp>
@@ -24,14 +23,14 @@ FASTCCD_INLINE RelativeMotion<L> with_equal_extents(const RelativeMotion<L>& r)
             {multiplied(r.end[0]), multiplied(r.end[1]), multiplied(r.end[2])}};
 }
 
-/// Whether that look proves nothing at time 0: contact there is the answer. Of the motion as it is searched.
+/// Whether the direction in which the pair is farthest apart at s proves nothing there. Of the motion as it is searched. A function of its
+/// own: much code, seldom run.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> stays_in_contact_at_start(const RelativeMotion<L>& r, const ErrorBounds& bounds)
+__attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r, L s, const ErrorBounds& bounds)
 {
     const RelativeMotion<L> equal = with_equal_extents(r);
-    const L zero = broadcast<L>(0.0);
-    const Sight<L> sight = look<kind>(equal, extents(equal), zero, SeparationParameters{}, SeparationBounds{bounds.rho});
-    return !certified_at(sight.reach, zero);
+    const Sight<L> sight = look<kind>(equal, extents(equal), s, SeparationParameters{}, SeparationBounds{bounds.rho});
+    return !certified_at(sight.reach, s);
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
