@@ -5,7 +5,8 @@
 // Certificates may lead through such a leaf, each from the end of the last one. Or they end, and where the pair meets right after that, as
 // far as rounding can tell, no part that contains this time has one of the three certificates (nor eq. 7, but for rounding): halved down to
 // the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, or directions show no distance either
-// (no_distance.hpp), hardly any other search would clear it. So it is reported at once, by the search and, with the same bits, by lanes; with the end of the certificates as lower bound.
+// (no_distance.hpp), hardly any other search would clear it. So it is reported at once, by the search and, with the same bits, by lanes; with
+// the end of the certificates as lower bound.
 // From the leaf's own polynomials (restriction.hpp), by which hardly a pair is in between.
 #pragma once
 
@@ -214,14 +215,14 @@ FASTCCD_INLINE LaneMask<L> counts_as_contact_at_start(const PairCoefficientsOf<L
     return Lane<L>::bits(!shaped) == 0 ? shaped : shaped | no_distance_at<kind>(motion_of<L>(pair), zero, bounds);
 }
 
-/// The start of the leaf that holds `time`.
+/// The start of the interval of this width, one of those that the step is halved to, that holds `time`.
 template <class L>
-FASTCCD_INLINE L leaf_start(L time, const SearchParameters& parameters)
+FASTCCD_INLINE L interval_start(L time, double width)
 {
     // floor(time / w), by adding and subtracting 2^52 (exact for 0 <= time / w <= 2^50).
-    const L scaled = time * broadcast<L>(parameters.leaf_count);
+    const L scaled = time * broadcast<L>(1.0 / width);
     const L nearest = (scaled + broadcast<L>(0x1p52)) - broadcast<L>(0x1p52);
-    return select<L>(less(scaled, nearest), nearest - broadcast<L>(1.0), nearest) * broadcast<L>(parameters.leaf_width);
+    return select<L>(less(scaled, nearest), nearest - broadcast<L>(1.0), nearest) * broadcast<L>(width);
 }
 
 /// In narrower leaves too few pairs are told so for all to be looked at: what rounding hides is too large a part of them.

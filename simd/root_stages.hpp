@@ -168,7 +168,7 @@ private:
     FASTCCD_INLINE Leaf leaf_at(L time) const
     {
         const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-        const L w = broadcast<L>(parameters_.leaf_width), left = leaf_start(time, parameters_);
+        const L w = broadcast<L>(parameters_.leaf_width), left = interval_start(time, parameters_.leaf_width);
         const L right = left + w, half = broadcast<L>(0.5) * w;
         return {left, right, left + half, half, less(zero, left) & less_equal(right, one)};
     }

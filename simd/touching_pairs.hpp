@@ -55,7 +55,7 @@ FASTCCD_INLINE L apart_before(const PolynomialsOf<L>& pair, const PolynomialsOf<
 {
     const L one = broadcast<L>(1.0);
     for (int k = 0; k < most_certificates && Lane<L>::bits(open) != 0; ++k) {
-        const L end = last_certificate<kind>(pair, time, one, level_with_margins), left = leaf_start(end, parameters);
+        const L end = last_certificate<kind>(pair, time, one, level_with_margins), left = interval_start(end, parameters.leaf_width);
         open = open & less(time, left);
         if (Lane<L>::bits(open) == 0) break;
         open = open & apart_on<kind>(sure, time, end);
@@ -63,6 +63,17 @@ FASTCCD_INLINE L apart_before(const PolynomialsOf<L>& pair, const PolynomialsOf<
         open = open & less(left, one);
     }
     return time;
+}
+
+/// Those of `asked` that the search finds apart on none of the intervals that hold a leaf, but for the leaf and the step.
+template <PairKind kind, class L>
+__attribute__((noinline)) LaneMask<L> not_apart_around(const PairCoefficientsOf<L>& pair, L left, double leaf_width, LaneMask<L> asked)
+{
+    for (double width = 2.0 * leaf_width; width < 1.0 && Lane<L>::bits(asked) != 0; width *= 2.0) {
+        const L start = interval_start(left, width);
+        asked = asked & !apart_on<kind>(pair, start, start + broadcast<L>(width));
+    }
+    return asked;
 }
 
 /// In terms of lanes. Apart: throughout what was asked for, a leaf, two, or the step.
@@ -89,12 +100,14 @@ __attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>
     found.apart = apart | touch.apart;
     if (Lane<L>::bits(touch.present) == 0) return found;
     // The search comes to this leaf if nothing around it has a certificate: if the pair meets, or if the leaf has none even by less than
-    // the bounds.
+    // the bounds; where neither, all that is around it is asked.
     LaneMask<L> comes_here = meets_at<kind>(pair, touch.time);
     if (Lane<L>::bits(touch.present & !comes_here) != 0) {
         set_bounds<kind>(leaf, pair, -1.0);
         comes_here = comes_here | !apart_on<kind>(leaf, all);
     }
+    if (const LaneMask<L> unclear = touch.present & !comes_here; Lane<L>::bits(unclear) != 0)
+        comes_here = comes_here | not_apart_around<kind>(pair, left, parameters.leaf_width, unclear);
     const LaneMask<L> present = touch.present & comes_here;
     found.reported = proven | present;
     if (Lane<L>::bits(present) != 0) found.proven = proven | (present & (certain | contact_proven_near<kind>(pair, touch.time)));

@@ -219,6 +219,7 @@ mutant 'touch: times rounded to nearest' kernels/restriction.hpp 's/broadcast<L>
 mutant 'touch: the first leaf by its own polynomials' scalar/leaf_search.hpp 's/is_first = leaf\.a == 0\.0/is_first = leaf.a < 0.0/' ordered_search_test
 mutant 'touch: lanes, whether the search comes to the leaf' $in_leaves 's/present = touch\.present & comes_here/present = touch.present/' touching_test same_bits_test stress
 mutant 'touch: lanes, wider intervals by the bounds' $in_leaves 's/set_bounds<kind>\(leaf, pair, -1\.0\)/set_bounds<kind>(leaf, pair, 0.0)/' touching_test same_bits_test stress
+mutant 'touch: lanes, wider intervals not asked' $in_leaves 's/asked = asked & !apart_on<kind>\(pair, start, [^;]*;//' touching_test same_bits_test stress
 mutant 'touch: lanes, the first leaf by its start' $in_leaves 's/asked & certain & less\(broadcast<L>\(0\.0\), left\)/asked \& certain/' touching_test same_bits_test
 mutant 'touch: lanes, the first leaf without its proof' $in_leaves 's/present & \(certain \| /present \& (/' touching_test
 mutant 'touch: lanes, the last note counts' simd/lane_results.hpp 's/if \(is_first\) scratch/scratch/' same_bits_test touching_test stress
