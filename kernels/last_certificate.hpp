@@ -19,12 +19,12 @@ struct CertificateLevel {
 /// About where the pair may meet; and where values are probably beyond their bounds, however they are rounded.
 inline constexpr CertificateLevel zero_level{0.0, 0.0}, beyond_rounding{3.0, 0.0};
 
-/// A chord of the control polygon, from c0 to the coefficient c of this abscissa, is e at abscissa (c0 - e) / (c0 - c).
+/// From the coefficient c of abscissa x to the one d of abscissa y a line comes down to e at x + (c - e) (y - x) / (c - d); 1 if it does not.
 template <class L>
-FASTCCD_INLINE L chord_above_until(L c0, L c, double abscissa, L e)
+FASTCCD_INLINE L down_at(L c, double x, L d, double y, L e)
 {
-    const L share = broadcast<L>(abscissa) / (c0 - c);
-    return select<L>(less(c, e), select<L>(less(e, c0), (c0 - e) * share, broadcast<L>(0.0)), broadcast<L>(1.0));
+    const L at = broadcast<L>(x) + (c - e) * (broadcast<L>(y - x) / (c - d));
+    return select<L>(less(d, e) & less(e, c), at, broadcast<L>(1.0));
 }
 
 /// How long a function, times the sign of its first coefficient, is above e >= 0 from the start of an interval on, in shares of it; 1 if to its
@@ -32,7 +32,8 @@ FASTCCD_INLINE L chord_above_until(L c0, L c, double abscissa, L e)
 template <class L>
 FASTCCD_INLINE L above_until(const Linear<L>& f, L e)
 {
-    return chord_above_until(abs(f.c0), times_sign(f.c1, f.c0), 1.0, e);
+    const L c0 = abs(f.c0);
+    return select<L>(less(e, c0), down_at(c0, 0.0, times_sign(f.c1, f.c0), 1.0, e), broadcast<L>(0.0));
 }
 
 /// With c_k the coefficients less e: c0 (1 - s)^2 + 2 c1 s (1 - s) + c2 s^2 = 0 first for s = c0 / (c0 - c1 + root), root =
@@ -50,14 +51,34 @@ FASTCCD_INLINE L above_until(const Quadratic<L>& f, L e)
     return select<L>(less(min(c1, c2), zero), select<L>(less(zero, c0), first, zero), one);
 }
 
-/// Before any chord is e.
+/// Until the hull of its coefficients comes down to e, along a line between two of them, at least: so do those on an interval up to there.
+/// Where they are not in line about, somewhat on: to where Newton's method leads if that is above e, as where it is convex, else along the
+/// secant, which is below it where it is concave. The third of the coefficients on [0, s] is the quadratic of the first three at s, whose
+/// hull is that of these three, stretched by 3/2; the second one stays above e for longer.
 template <class L>
 FASTCCD_INLINE L above_until(const Cubic<L>& f, L e)
 {
-    const auto chord = [&](L c, double abscissa) FASTCCD_INLINE_LAMBDA {
-        return chord_above_until(abs(f.c0), times_sign(c, f.c0), abscissa, e);
+    constexpr double first = 1.0 / 3.0, second = 2.0 / 3.0;
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    const L c0 = abs(f.c0), c1 = times_sign(f.c1, f.c0), c2 = times_sign(f.c2, f.c0), c3 = times_sign(f.c3, f.c0);
+    const L inner = min(down_at(c0, 0.0, c1, first, e), down_at(c0, 0.0, c2, second, e), down_at(c1, first, c2, second, e));
+    const L hull = min(inner, min(down_at(c0, 0.0, c3, 1.0, e), down_at(c1, first, c3, 1.0, e), down_at(c2, second, c3, 1.0, e)));
+    const L until = select<L>(less(e, c0), hull, zero), bend = max(abs((c2 - c1) - (c1 - c0)), abs((c3 - c2) - (c2 - c1)));
+    const LaneMask<L> bent = less(broadcast<L>(0x1p-20) * c0, bend) & less(zero, until) & less(until, one);
+    if (Lane<L>::bits(bent) == 0) return until;
+
+    struct Value {
+        L f, slope;
     };
-    return min(chord(f.c1, 1.0 / 3.0), chord(f.c2, 2.0 / 3.0), chord(f.c3, 1.0));
+    const auto at = [&](L s) FASTCCD_INLINE_LAMBDA -> Value {
+        const L p = lerp(c0, c1, s), q = lerp(c1, c2, s), r = lerp(c2, c3, s), a = lerp(p, q, s), b = lerp(q, r, s);
+        return {lerp(a, b, s) - e, broadcast<L>(3.0) * (b - a)};
+    };
+    const Value here = at(until);
+    const L newton = min(max(until - here.f / here.slope, until), min(broadcast<L>(1.5) * inner, one));
+    const L there = at(newton).f, secant = until + (newton - until) * (here.f / (here.f - there));
+    const LaneMask<L> comes_down = bent & less(zero, here.f) & less(here.slope, zero);
+    return select<L>(comes_down, select<L>(less(there, zero), secant, newton), until);
 }
 
 template <class L>

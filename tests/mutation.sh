@@ -220,6 +220,10 @@ mutant 'touch: the first leaf by its own polynomials' scalar/leaf_search.hpp 's/
 mutant 'touch: lanes, whether the search comes to the leaf' $in_leaves 's/present = touch\.present & comes_here/present = touch.present/' touching_test same_bits_test stress
 mutant 'touch: lanes, wider intervals by the bounds' $in_leaves 's/set_bounds<kind>\(leaf, pair, -1\.0\)/set_bounds<kind>(leaf, pair, 0.0)/' touching_test same_bits_test stress
 mutant 'touch: lanes, wider intervals not asked' $in_leaves 's/asked = asked & !apart_on<kind>\(pair, start, [^;]*;//' touching_test same_bits_test stress
+ends=kernels/last_certificate.hpp
+mutant 'ends of certificates: cubics above each line from their start' $ends 's/min\(down_at\(c0, 0\.0, c3, 1\.0, e\), [^;]*;/down_at(c0, 0.0, c3, 1.0, e));/' touching_test
+mutant 'ends of certificates: cubics where Newton leads' $ends 's/select<L>\(less\(there, zero\), secant, newton\)/newton/' touching_test
+mutant 'ends of certificates: cubics whatever the third coefficient' $ends 's/min\(broadcast<L>\(1\.5\) \* inner, one\)/one/' touching_test
 mutant 'touch: lanes, the first leaf by its start' $in_leaves 's/asked & certain & less\(broadcast<L>\(0\.0\), left\)/asked \& certain/' touching_test same_bits_test
 mutant 'touch: lanes, the first leaf without its proof' $in_leaves 's/present & \(certain \| /present \& (/' touching_test
 mutant 'touch: lanes, the last note counts' simd/lane_results.hpp 's/if \(is_first\) scratch/scratch/' same_bits_test touching_test stress
