@@ -87,66 +87,92 @@ FASTCCD_INLINE L on_whole(L share, L a, L b)
     return min(max(a + (b - a) * share, a), b);
 }
 
-/// How long a function keeps the strict sign that it has at a time; until that time, if it has not that sign.
-template <class L>
-struct SignEnd {
-    L positive, negative;
-};
-
-/// Until its size is down to `level`; of Bernstein coefficients on [a, b].
+/// The strict sign that Bernstein coefficients begin with.
 template <class Polynomial, class L>
-FASTCCD_INLINE SignEnd<L> sign_end(const Polynomial& f, L bound, L level, L a, L b)
+FASTCCD_INLINE StrictSign<L> sign_at_start(const Polynomial& f, L bound)
 {
-    const L end = on_whole(above_until(f, level), a, b);
-    return {select<L>(less(bound, f.c0), end, a), select<L>(less(f.c0, negated(bound)), end, a)};
+    return {less(bound, f.c0), less(f.c0, negated(bound))};
 }
 
 /// The end of the last gap along an axis, of those that are open at a, b at most; a if none is. It ends when it is down to `level`.
 template <PairKind kind, class L>
-FASTCCD_INLINE L last_gap(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level)
+FASTCCD_INLINE L last_gap(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level, LaneMask<L> asked)
 {
-    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     L last = a;
     for (int axis = 0; axis < 3; ++axis) {  // as separated_on: all gaps, the first to end
-        L until = one;
-        LaneMask<L> above = less_equal(zero, zero), below = above;
+        const auto& gaps = pair.gaps[axis];
+        const auto on_rest = [&](int k) FASTCCD_INLINE_LAMBDA { return on_interval(Linear<L>{gaps[k].start, gaps[k].end}, a, b); };
+        LaneMask<L> above = asked, below = asked;
         for (int k = 0; k < gap_count(kind); ++k) {
-            const auto& gap = pair.gaps[axis][k];
-            const Linear<L> whole{gap.start, gap.end}, g = on_interval(whole, a, b);
-            above = above & less(gap.bound, g.c0);
-            below = below & less(g.c0, negated(gap.bound));
-            until = min(until, above_until(g, level(gap.bound, value_margin(whole))));
+            const StrictSign<L> sign = sign_at_start(on_rest(k), gaps[k].bound);
+            above = above & sign.positive;
+            below = below & sign.negative;
         }
         const LaneMask<L> open = above | below;
+        if (Lane<L>::bits(open) == 0) continue;
+        L until = broadcast<L>(1.0);
+        for (int k = 0; k < gap_count(kind); ++k)
+            until = min(until, above_until(on_rest(k), level(gaps[k].bound, value_margin(Linear<L>{gaps[k].start, gaps[k].end}))));
         last = max(last, select<L>(open, on_whole(until, a, b), a));
     }
     return last;
 }
 
-/// The end of the last certificate of those that hold at a, b at most; a if none does. It ends when what it compares with its bound has come
-/// down to `level`. A function of its own: much code, seldom run.
+/// How long edge functions keep the strict sign that they have at a time; until that time, if they have not that sign.
+template <class L>
+struct SignEnd {
+    L positive, negative;
+};
+
+/// The end of the last certificate by edge functions in projections, as last_gap.
 template <PairKind kind, class L>
-__attribute__((noinline)) L last_certificate(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level)
+FASTCCD_INLINE L last_in_projections(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level, LaneMask<L> asked)
 {
-    const Cubic<L> cubic{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]};
-    const SignEnd<L> volume = sign_end(on_interval(cubic, a, b), pair.cubic_bound, level(pair.cubic_bound, value_margin(cubic)), a, b);
-    L last = max(last_gap<kind>(pair, a, b, level), max(volume.positive, volume.negative));
+    L last = a;
     for (const auto& edges : pair.edges) {  // as apart_along
-        const auto edge_function = [&](int edge) FASTCCD_INLINE_LAMBDA {
-            const auto& e = edges[edge];
-            const Quadratic<L> whole{e.start, e.middle, e.end};
-            return sign_end(on_interval(whole, a, b), e.bound, level(e.bound, value_margin(whole)), a, b);
+        Quadratic<L> rest[4];
+        StrictSign<L> sign[4];
+        for (int k = 0; k < edge_function_count(kind); ++k) {
+            rest[k] = on_interval(Quadratic<L>{edges[k].start, edges[k].middle, edges[k].end}, a, b);
+            sign[k] = sign_at_start(rest[k], edges[k].bound);
+        }
+        const auto until = [&](int k) FASTCCD_INLINE_LAMBDA -> SignEnd<L> {
+            const auto& e = edges[k];
+            const L end = on_whole(above_until(rest[k], level(e.bound, value_margin(Quadratic<L>{e.start, e.middle, e.end}))), a, b);
+            return {select<L>(sign[k].positive, end, a), select<L>(sign[k].negative, end, a)};
         };
-        const SignEnd<L> p = edge_function(0), q = edge_function(1), t = edge_function(2);
         if constexpr (kind == PairKind::vertex_face) {
+            const LaneMask<L> holds = (sign[0].positive | sign[1].positive | sign[2].positive) & (sign[0].negative | sign[1].negative | sign[2].negative);
+            if (Lane<L>::bits(asked & holds) == 0) continue;
+            const SignEnd<L> p = until(0), q = until(1), t = until(2);
             last = max(last, min(max(p.positive, q.positive, t.positive), max(p.negative, q.negative, t.negative)));
         } else {
-            const SignEnd<L> s = edge_function(3);
-            last = max(last, max(min(p.positive, t.positive), min(p.negative, t.negative)));
-            last = max(last, max(min(q.positive, s.positive), min(q.negative, s.negative)));
+            const auto along = [&](int k, int l) FASTCCD_INLINE_LAMBDA {
+                const LaneMask<L> holds = (sign[k].positive & sign[l].positive) | (sign[k].negative & sign[l].negative);
+                if (Lane<L>::bits(asked & holds) == 0) return;
+                const SignEnd<L> p = until(k), t = until(l);
+                last = max(last, max(min(p.positive, t.positive), min(p.negative, t.negative)));
+            };
+            along(0, 2);
+            along(1, 3);
         }
     }
     return last;
+}
+
+/// The end of the last certificate of those that hold at a, b at most; a if none does. It ends when what it compares with its bound has come
+/// down to `level`. Of lanes that are not `asked`, any time from a to b. A function of its own: much code, seldom run.
+template <PairKind kind, class L>
+__attribute__((noinline)) L last_certificate(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level, LaneMask<L> asked)
+{
+    const Cubic<L> cubic{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, rest = on_interval(cubic, a, b);
+    const StrictSign<L> sign = sign_at_start(rest, pair.cubic_bound);
+    const LaneMask<L> volume = sign.positive | sign.negative;
+    L last = a;
+    if (Lane<L>::bits(asked & volume) != 0)
+        last = select<L>(volume, on_whole(above_until(rest, level(pair.cubic_bound, value_margin(cubic))), a, b), a);
+    last = max(last, last_gap<kind>(pair, a, b, level, asked & less(last, b)));
+    return max(last, last_in_projections<kind>(pair, a, b, level, asked & less(last, b)));
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

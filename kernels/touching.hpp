@@ -63,7 +63,7 @@ FASTCCD_INLINE CertifiedUntil<L> certified_until(const PolynomialsOf<L>& leaf, L
     CertifiedUntil<L> found{zero, zero};
     LaneMask<L> open = asked;
     for (int k = 0; k < most_certificates_in_leaf; ++k) {
-        const L end = last_certificate<kind>(leaf, found.end, one, still_certain);
+        const L end = last_certificate<kind>(leaf, found.end, one, still_certain, open);
         open = open & less(found.end, end);
         if (Lane<L>::bits(open) == 0) break;
         open = open & apart_on<kind>(leaf, found.end, end);
@@ -76,10 +76,10 @@ FASTCCD_INLINE CertifiedUntil<L> certified_until(const PolynomialsOf<L>& leaf, L
 /// Right after the last certificate, whether what it is of goes on to zero or not: as between surfaces that glide along one another with less
 /// between them than rounding hides.
 template <PairKind kind, class L>
-FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PolynomialsOf<L>& leaf, const CertifiedUntil<L>& until)
+FASTCCD_INLINE LikelyTouch<L> touch_by_certificates(const PolynomialsOf<L>& leaf, const CertifiedUntil<L>& until, LaneMask<L> asked)
 {
     const L one = broadcast<L>(1.0);
-    return likely_touch(max(last_certificate<kind>(leaf, until.last_start, one, just_lost), until.end), until.end);
+    return likely_touch(max(last_certificate<kind>(leaf, until.last_start, one, just_lost, asked), until.end), until.end);
 }
 
 /// Contact for certain within a part: a strict change of sign, and strict inclusion throughout.
@@ -262,7 +262,7 @@ FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoeffic
         found.apart = asked & less_equal(one, until.end);
         asked = asked & !found.apart;
         if (Lane<L>::bits(asked) == 0) return found;
-        const LikelyTouch<L> likely = touch_by_certificates<kind>(leaf, until);
+        const LikelyTouch<L> likely = touch_by_certificates<kind>(leaf, until, asked);
         found.likely = likely.time;
         look_at(likely, true);
     }

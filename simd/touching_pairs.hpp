@@ -55,7 +55,7 @@ FASTCCD_INLINE L apart_before(const PolynomialsOf<L>& pair, const PolynomialsOf<
 {
     const L one = broadcast<L>(1.0);
     for (int k = 0; k < most_certificates && Lane<L>::bits(open) != 0; ++k) {
-        const L end = last_certificate<kind>(pair, time, one, level_with_margins), left = interval_start(end, parameters.leaf_width);
+        const L end = last_certificate<kind>(pair, time, one, level_with_margins, open), left = interval_start(end, parameters.leaf_width);
         open = open & less(time, left);
         if (Lane<L>::bits(open) == 0) break;
         open = open & apart_on<kind>(sure, time, end);
