@@ -203,6 +203,16 @@ FASTCCD_INLINE LaneMask<L> less_equal(L a, L b)
 {
     return Lane<L>::less_equal(a, b);
 }
+template <class L>
+FASTCCD_INLINE LaneMask<L> no_lanes()
+{
+    return less(broadcast<L>(0.0), broadcast<L>(0.0));
+}
+template <class L>
+FASTCCD_INLINE LaneMask<L> all_lanes()
+{
+    return less_equal(broadcast<L>(0.0), broadcast<L>(0.0));
+}
 
 /// Three components, one per axis.
 template <class L>

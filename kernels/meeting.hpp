@@ -66,8 +66,7 @@ FASTCCD_INLINE LaneMask<L> may_touch_along(const PolynomialsOf<L>& pair, int axi
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> may_overlap_along(const PolynomialsOf<L>& pair, int axis, L s)
 {
-    const L zero = broadcast<L>(0.0);
-    LaneMask<L> reaches_up = less(zero, zero), reaches_down = reaches_up;
+    LaneMask<L> reaches_up = no_lanes<L>(), reaches_down = reaches_up;
     for (int k = 0; k < gap_count(kind); ++k) {
         const auto& g = pair.gaps[axis][k];
         const Linear<L> gap{g.start, g.end};

@@ -1,6 +1,6 @@
 // Pairs that seem to meet, of a shape that amplifies rounding: edges in line or nearly parallel, or a face without area, but for rounding.
-// Distances along a direction tell apart what computed positions tell apart, and where they tell nothing at the time from which the search
-// along directions (scalar/separation_search.cpp) would go on, it ends there, too.
+// Distances along a direction tell apart what computed positions tell apart. Where the direction that shows most tells nothing, the search
+// along directions (scalar/separation_search.cpp) would hardly get on, either.
 #pragma once
 
 #include <separation_certificate.hpp>
@@ -23,14 +23,23 @@ FASTCCD_INLINE RelativeMotion<L> with_equal_extents(const RelativeMotion<L>& r)
             {multiplied(r.end[0]), multiplied(r.end[1]), multiplied(r.end[2])}};
 }
 
-/// Whether the direction in which the pair is farthest apart at s proves nothing there. Of the motion as it is searched. A function of its
-/// own: much code, seldom run.
+/// A pair this close, in shares of the distance at which the search along directions stops (SeparationParameters::resolution), counts as one
+/// that is not apart, but at time 0. Of pairs that stay in one plane a look tells nearly all so; the whole of it would report more near misses.
+inline constexpr double share_of_resolution = 0.25;
+
+/// Whether the direction in which the pair is farthest apart at s proves nothing there, or no more than that. Of the motion as it is searched.
+/// A function of its own: much code, seldom run.
 template <PairKind kind, class L>
 __attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r, L s, const ErrorBounds& bounds)
 {
     const RelativeMotion<L> equal = with_equal_extents(r);
-    const Sight<L> sight = look<kind>(equal, extents(equal), s, SeparationParameters{}, SeparationBounds{bounds.rho});
-    return !certified_at(sight.reach, s);
+    const Extents<L> e = extents(equal);
+    const Sight<L> sight = look<kind>(equal, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
+    const LaneMask<L> proven = certified_at(sight.reach, s);
+    if (Lane<L>::bits(proven) == 0) return !proven;
+    const L close = broadcast<L>(share_of_resolution * SeparationParameters::resolution) * sum(e);
+    const L distance = sqrt(square_distance<kind>(sight.at, sight.separation));
+    return !(proven & (less_equal(s, broadcast<L>(0.0)) | less(close, distance)));
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

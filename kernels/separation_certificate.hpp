@@ -161,7 +161,7 @@ FASTCCD_INLINE LaneMask<L> farther_while_turning(const RelativeMotion<L>& r, con
             return {first - other.first, middle_n - other.middle_n, middle_m - other.middle_m, last - other.last};
         }
     };
-    LaneMask<L> all = less(broadcast<L>(0.0), broadcast<L>(1.0));
+    LaneMask<L> all = all_lanes<L>();
     for_each_height<kind>(
         [&](int i) FASTCCD_INLINE_LAMBDA -> Coefficients {
             const Vector3<L> at_a = position(r, i, a), at_b = position(r, i, b);

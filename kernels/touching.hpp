@@ -97,7 +97,7 @@ inline constexpr double narrowest_proof = 0x1p-48, widest_proof = 0x1p-6;
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> contact_proven_near(const PolynomialsOf<L>& pair, L s)
 {
-    LaneMask<L> proven = less(s, s), open = !proven;
+    LaneMask<L> proven = no_lanes<L>(), open = all_lanes<L>();
     for (double reach = narrowest_proof; reach <= widest_proof && Lane<L>::bits(open) != 0; reach *= 8) {
         const Between<L> around{max(s - broadcast<L>(reach), broadcast<L>(0.0)), min(s + broadcast<L>(reach), broadcast<L>(1.0))};
         open = open & included_on<kind>(pair, around);  // if not, nor, but for rounding, in anything wider
@@ -166,10 +166,9 @@ FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> share_vertex_at(const PolynomialsOf<L>& pair, L s, L share)
 {
-    const L zero = broadcast<L>(0.0);
-    LaneMask<L> any = less(zero, zero);
+    LaneMask<L> any = no_lanes<L>();
     for (int k = 0; k < gap_count(kind); ++k) {
-        LaneMask<L> same = less_equal(zero, zero);
+        LaneMask<L> same = all_lanes<L>();
         for (int axis = 0; axis < 3; ++axis) {
             const auto& gap = pair.gaps[axis][k];
             same = same & less_equal(abs(lerp(gap.start, gap.end, s)), broadcast<L>(8.0) * share * gap.bound);
@@ -191,28 +190,27 @@ FASTCCD_INLINE LaneMask<L> well_shaped_at(const PairCoefficientsOf<L>& pair, L s
     return shaped;
 }
 
-/// Whether a pair that meets at s, as far as its certificates tell, and is apart until `before`, is in contact for all that computed positions
-/// tell. If its shape amplifies rounding, eq. 7 at s and the direction in which it is farthest apart may still tell; and the search along
-/// directions would begin where certificates end: unless that gets on, this is its answer.
+/// Those of `asked`, pairs that meet at s as far as certificates tell, that do so for all that computed positions tell. If the shape amplifies
+/// rounding, eq. 7 and directions may still tell: at s, and at `before`, from where a search along directions would go on.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> counts_as_contact_at(const PairCoefficientsOf<L>& pair, L s, L before, const ErrorBounds& bounds)
+FASTCCD_INLINE LaneMask<L> counts_as_contact_at(const PairCoefficientsOf<L>& pair, L s, L before, const ErrorBounds& bounds, LaneMask<L> asked)
 {
-    const LaneMask<L> shaped = well_shaped_at<kind>(pair, s, broadcast<L>(1.0));
-    LaneMask<L> counts = !shaped;
-    if (Lane<L>::bits(counts) != 0) counts = counts & !apart_by_area_on<kind>(pair, s, s);
+    const LaneMask<L> shaped = asked & well_shaped_at<kind>(pair, s, broadcast<L>(1.0));
+    LaneMask<L> thin = asked & !shaped;
+    if (Lane<L>::bits(thin) != 0) thin = thin & !apart_by_area_on<kind>(pair, s, s);
     for (const L& time : {s, before})
-        if (Lane<L>::bits(counts) != 0) counts = counts & no_distance_at<kind>(motion_of<L>(pair), time, bounds);
-    return shaped | counts;
+        if (Lane<L>::bits(thin) != 0) thin = thin & no_distance_at<kind>(motion_of<L>(pair), time, bounds);
+    return shaped | thin;
 }
 
-/// The same of a pair in contact at time 0 (in_contact_at_start). Its vertices are where they were given then, so what is zero may be asked to
+/// The same of pairs in contact at time 0 (in_contact_at_start). Their vertices are where they were given then, so what is zero may be asked to
 /// be just that: distances along directions tell apart what is not.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> counts_as_contact_at_start(const PairCoefficientsOf<L>& pair, const ErrorBounds& bounds)
+FASTCCD_INLINE LaneMask<L> counts_as_contact_at_start(const PairCoefficientsOf<L>& pair, const ErrorBounds& bounds, LaneMask<L> asked)
 {
     const L zero = broadcast<L>(0.0);
-    const LaneMask<L> shaped = well_shaped_at<kind>(pair, zero, zero);
-    return Lane<L>::bits(!shaped) == 0 ? shaped : shaped | no_distance_at<kind>(motion_of<L>(pair), zero, bounds);
+    const LaneMask<L> shaped = asked & well_shaped_at<kind>(pair, zero, zero), thin = asked & !shaped;
+    return Lane<L>::bits(thin) == 0 ? shaped : shaped | (thin & no_distance_at<kind>(motion_of<L>(pair), zero, bounds));
 }
 
 /// The start of the interval of this width, one of those that the step is halved to, that holds `time`.
@@ -228,7 +226,7 @@ FASTCCD_INLINE L interval_start(L time, double width)
 /// In narrower leaves too few pairs are told so for all to be looked at: what rounding hides is too large a part of them.
 inline constexpr double narrowest_touched = 0x1p-44;
 
-/// Whether a pair that is well shaped is in contact in a leaf for all that rounding can tell, though nothing proves it, and until less than
+/// Whether a pair is in contact in a leaf for all that rounding can tell, though nothing proves it, and until less than
 /// half of the leaf before that apart for certain, or before its start. Not where the lower bound would be time 0.
 template <class L>
 struct Touch {
@@ -242,12 +240,12 @@ template <PairKind kind, class L>
 FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoefficientsOf<L>& pair, const ErrorBounds& bounds, LaneMask<L> asked)
 {
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-    Touch<L> found{less(one, zero), less(one, zero), leaf.origin, leaf.origin, zero};
+    Touch<L> found{no_lanes<L>(), no_lanes<L>(), leaf.origin, leaf.origin, zero};
     const auto look_at = [&](const LikelyTouch<L>& likely, bool is_apart_before) FASTCCD_INLINE_LAMBDA {
         const L time = time_in_step(leaf, likely.time), until = earlier_in_step(leaf, likely.before);
         LaneMask<L> present = asked & likely.expected & less(zero, until);
         if (Lane<L>::bits(present) != 0) present = present & meets_at<kind>(leaf, likely.time);
-        if (Lane<L>::bits(present) != 0) present = present & counts_as_contact_at<kind>(pair, time, until, bounds);
+        if (Lane<L>::bits(present) != 0) present = counts_as_contact_at<kind>(pair, time, until, bounds, present);
         if (Lane<L>::bits(present) != 0) present = present & !apart_by_area_on<kind>(pair, leaf.origin, leaf.origin + leaf.duration);
         if (Lane<L>::bits(present) != 0 && !is_apart_before)
             present = present & (less_equal(likely.before, zero) | apart_on<kind>(leaf, zero, likely.before));

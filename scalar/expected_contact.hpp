@@ -61,8 +61,8 @@ private:
     [[nodiscard]] static double end_of_certificates(const PairCoefficients& pair)
     {
         double before = 0.0;  // after four of them, as many as most pairs have
-        for (int k = 0; k < 3; ++k) before = last_certificate<kind>(pair, before, 1.0, beyond_rounding, less(0.0, 1.0));
-        return last_certificate<kind>(pair, before, 1.0, zero_level, less(0.0, 1.0));
+        for (int k = 0; k < 3; ++k) before = last_certificate<kind>(pair, before, 1.0, beyond_rounding, all_lanes<double>());
+        return last_certificate<kind>(pair, before, 1.0, zero_level, all_lanes<double>());
     }
 
     /// The value next to zero that a search coming from `value` meets first.

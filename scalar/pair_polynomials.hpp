@@ -51,7 +51,7 @@ public:
     // See touching.hpp.
     [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf, const ErrorBounds& bounds) const
     {
-        return touch_in<kind>(leaf, pair_, bounds, less_equal(0.0, 1.0));
+        return touch_in<kind>(leaf, pair_, bounds, all_lanes<double>());
     }
     [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair_, Between<double>{i.a, i.b}).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair_, s).value; }
@@ -62,7 +62,7 @@ public:
     }
     [[nodiscard]] bool counts_as_contact_at_start(const ErrorBounds& bounds) const
     {
-        return FASTCCD_KERNEL_NAMESPACE::counts_as_contact_at_start<kind>(pair_, bounds).value;
+        return FASTCCD_KERNEL_NAMESPACE::counts_as_contact_at_start<kind>(pair_, bounds, all_lanes<double>()).value;
     }
     [[nodiscard]] bool has_area(double s) const { return has_area_at<kind>(pair_, s).value; }
 

@@ -84,7 +84,7 @@ void follow(const std::vector<oracle::Pair>& pairs, std::size_t& asked, std::siz
 {
     constexpr CertificateLevel certain{1.0, 2.0};
     const SearchParameters parameters{1e-9, 1.0, false};
-    const auto all = less(0.0, 1.0);
+    const auto all = all_lanes<double>();
     for (const oracle::Pair& pair : pairs) {
         const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
         for (double time = 0.0; time < 1.0;) {

@@ -189,7 +189,7 @@ mutant 'value margin of gaps = 0' $meeting 's/\(2 \* 2\.5 \+ 1\.2\) \* ErrorBoun
 touching=kernels/touching.hpp in_leaves=simd/touching_pairs.hpp
 mutant 'touch: whether they meet or not' $touching 's/present = present & meets_at<kind>\(leaf, likely\.time\)/static_cast<void>(0)/' touching_test truth_test
 mutant 'touch: not certain to be apart before' $touching 's/present = present & \(less_equal\(likely\.before, zero\) \| apart_on<kind>\(leaf, zero, likely\.before\)\)/static_cast<void>(0)/' touching_test truth_test stress
-mutant 'touch: of any shape' $touching 's/present = present & counts_as_contact_at<kind>\(pair, time, until, bounds\)/static_cast<void>(0)/' truth_test touching_test nothing_invented_test
+mutant 'touch: of any shape' $touching 's/present = counts_as_contact_at<kind>\(pair, time, until, bounds, present\)/static_cast<void>(0)/' truth_test touching_test nothing_invented_test
 mutant 'touch: half a leaf before' $touching 's/ & less\(time - within, broadcast<L>\(0\.5\)\)//' touching_test
 mutant 'touch: area of edges by their sum' $touching 's/area = area - value/area = area + value/' touching_test
 mutant 'touch: certificates not looked at' $touching 's/look_at\(likely, true\);//' touching_test
@@ -202,12 +202,13 @@ mutant 'touch: lanes, apart before not asked (root)' simd/root_stages.hpp 's/lea
 mutant 'touch: lanes, apart before not asked (certificates)' $in_leaves 's/open = open & apart_on<kind>\(sure, time, end\)/static_cast<void>(0)/' touching_test
 mutant 'touch: lanes, certificates without margins' $in_leaves 's/set_bounds<kind>\(sure, pair, 1\.0\)/set_bounds<kind>(sure, pair, 0.0)/' touching_test
 mutant 'touch: lanes, certificates with gaps between them' $in_leaves 's/time = select<L>\(open, left, time\)/time = select<L>(open, end, time)/' touching_test
-mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/at_start & counts_as_contact_at_start<kind>\(pair, parameters\.bounds\)/at_start/' touching_test same_bits_test
-mutant 'touch: thin pairs, whatever eq. 7 says' $touching 's/counts = counts & !apart_by_area_on<kind>\(pair, s, s\)/static_cast<void>(0)/' touching_test nothing_invented_test
-mutant 'touch: thin pairs, whatever directions say' $touching 's/counts = counts & no_distance_at<kind>\(motion_of<L>\(pair\), time, bounds\)/static_cast<void>(0)/' touching_test nothing_invented_test truth_test
+mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/counts_as_contact_at_start<kind>\(pair, parameters\.bounds, at_start\)/at_start/' touching_test same_bits_test
+mutant 'touch: thin pairs, whatever eq. 7 says' $touching 's/thin = thin & !apart_by_area_on<kind>\(pair, s, s\)/static_cast<void>(0)/' touching_test nothing_invented_test
+mutant 'touch: thin pairs, whatever directions say' $touching 's/thin = thin & no_distance_at<kind>\(motion_of<L>\(pair\), time, bounds\)/static_cast<void>(0)/' touching_test nothing_invented_test truth_test
 mutant 'touch: thin pairs, where certificates end not asked' $touching 's/\{s, before\}/{s}/' touching_test nothing_invented_test truth_test
-mutant 'touch: thin pairs, in units that they are not in' kernels/no_distance.hpp 's/look<kind>\(equal, extents\(equal\)/look<kind>(r, extents(r)/' touching_test same_bits_test
-mutant 'touch: thin pairs at the start, whatever directions say' $touching 's/shaped : shaped \| no_distance_at<kind>\(motion_of<L>\(pair\), zero, bounds\)/shaped : less_equal(zero, zero)/' touching_test never_zero_test nothing_invented_test
+mutant 'touch: thin pairs, in units that they are not in' kernels/no_distance.hpp 's/RelativeMotion<L> equal = with_equal_extents\(r\)/RelativeMotion<L> equal = r/' touching_test same_bits_test
+mutant 'touch: thin pairs, however close at time 0' kernels/no_distance.hpp 's/less_equal\(s, broadcast<L>\(0\.0\)\) \| //' touching_test never_zero_test
+mutant 'touch: thin pairs at the start, whatever directions say' $touching 's/\(thin & no_distance_at<kind>\(motion_of<L>\(pair\), zero, bounds\)\)/thin/' touching_test never_zero_test nothing_invented_test
 mutant 'touch: at the start in line by bounds' $touching 's/well_shaped_at<kind>\(pair, zero, zero\)/well_shaped_at<kind>(pair, zero, broadcast<L>(1.0))/' touching_test
 mutant 'touch: shapes at the start not looked at' scalar/leaf_search.hpp 's/if \(pair_\.counts_as_contact_at_start\(parameters_\.bounds\)\) touch_/touch_/' never_zero_test nothing_invented_test touching_test
 mutant 'touch: lanes, on where only one leaf is apart' $in_leaves 's/\(found\.apart & !in_next\) \| there\.apart/found.apart/' touching_test
@@ -221,7 +222,7 @@ mutant 'touch: lanes, whether the search comes to the leaf' $in_leaves 's/presen
 mutant 'touch: lanes, wider intervals by the bounds' $in_leaves 's/set_bounds<kind>\(leaf, pair, -1\.0\)/set_bounds<kind>(leaf, pair, 0.0)/' touching_test same_bits_test stress
 mutant 'touch: lanes, wider intervals not asked' $in_leaves 's/asked = asked & !apart_on<kind>\(pair, start, [^;]*;//' touching_test same_bits_test stress
 ends=kernels/last_certificate.hpp
-mutant 'ends of certificates: cubics above each line from their start' $ends 's/min\(down_at\(c0, 0\.0, c3, 1\.0, e\), [^;]*;/down_at(c0, 0.0, c3, 1.0, e));/' touching_test
+mutant 'ends of certificates: cubics above lines to their last coefficient' $ends 's/min\(down_at\(c0, 0\.0, c3, 1\.0, e\), [^;]*;/down_at(c0, 0.0, c3, 1.0, e));/' touching_test
 mutant 'ends of certificates: cubics where Newton leads' $ends 's/select<L>\(less\(there, zero\), secant, newton\)/newton/' touching_test
 mutant 'ends of certificates: cubics whatever the third coefficient' $ends 's/min\(broadcast<L>\(1\.5\) \* inner, one\)/one/' touching_test
 mutant 'touch: lanes, the first leaf by its start' $in_leaves 's/asked & certain & less\(broadcast<L>\(0\.0\), left\)/asked \& certain/' touching_test same_bits_test
