@@ -261,6 +261,25 @@ TEST(NothingInvented, FoundByHillClimbing)
     EXPECT_GT(worst.beyond, 0.1 * thin_bound) << "no longer the worst: another is to be looked for";
 }
 
+/// Edges of a cloth, nearly parallel when they pass each other: no direction tells them apart at the time at which they meet, as far as
+/// certificates tell, but one does where certificates end before it.
+TEST(NothingInvented, TellsWhereCertificatesEnd)
+{
+    const oracle::Pair pair{{{0x1.b62b8d75a947cp-1, 0x1.71cb05e3c80b3p-2, 0x1.c7647d5c1d798p-1},
+                             {0x1.77aee63d089b8p-1, 0x1.2166844d2faa4p-1, 0x1.db9c01c915b14p-1},
+                             {0x1.a8324024fe8f8p-1, 0x1.a089df78304fep-2, 0x1.cbfeebf1f4af6p-1},
+                             {0x1.6aba6c83dc692p-1, 0x1.373110522aa17p-1, 0x1.dfb25bcd4e217p-1},
+                             {0x1.bb49220ec79c5p-1, 0x1.6b0d610f17a08p-2, 0x1.c636687404679p-1},
+                             {0x1.7ccccb4ce56e3p-1, 0x1.1e083f1d74a90p-1, 0x1.da6d4f5922204p-1},
+                             {0x1.ad4a8382d11ddp-1, 0x1.99c69b372f2f0p-2, 0x1.cace9897f8373p-1},
+                             {0x1.6fd2b5e720ce4p-1, 0x1.33d00846a0cd0p-1, 0x1.de81f4b9cb3a4p-1}}};
+    for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
+        Options options;
+        options.tolerance = tolerance;
+        EXPECT_EQ(answer(oracle::Kind::edge_edge, interleaved({pair}), options).summary.contacts, 0u) << tolerance;
+    }
+}
+
 /// With area, found by hill climbing: farther than random ones.
 TEST(NothingInvented, WithArea)
 {
