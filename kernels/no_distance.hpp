@@ -27,8 +27,9 @@ FASTCCD_INLINE RelativeMotion<L> with_equal_extents(const RelativeMotion<L>& r)
 /// that is not apart, but at time 0. Of pairs that stay in one plane a look tells nearly all so; the whole of it would report more near misses.
 inline constexpr double share_of_resolution = 0.25;
 
-/// Whether the direction in which the pair is farthest apart at s proves nothing there, or no more than that. Of the motion as it is searched.
-/// A function of its own: much code, seldom run.
+/// Whether the direction in which the pair is farthest apart at s proves nothing there, or the pair is as close as that. So it is at most
+/// 2^2 sqrt(u) of its size apart at s, as where the search along directions stops (tests/nothing_invented_test.cpp says why). Of the motion as
+/// it is searched. A function of its own: much code, seldom run.
 template <PairKind kind, class L>
 __attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r, L s, const ErrorBounds& bounds)
 {

@@ -10,7 +10,7 @@
 // apart at its left end. Or because a part of it, halved down to where time ends, has no certificate of absence. There only
 // rounding is left: of volumes and areas, which are lost in it while the distance is still sqrt(u) s, or cbrt(u) s for edges that shrink
 // to a point. So where shapes are nearly degenerate then, and where the search came to a cap, the search with a separation goes on
-// (scalar/certified_search.cpp). It stops where
+// (scalar/certified_search.cpp), unless its first looks have told already that it would stop (kernels/no_distance.hpp). It stops where
 //
 // - the computed distance is 128 u s or less: 2^8 u s (separation_test.cpp); or
 // - neither the vector between the nearest points nor the normal proves anything. At a distance d that vector, off by some c u s as
