@@ -9,7 +9,7 @@
 #include <fastccd/options.hpp>
 
 #include <coplanarity.hpp>
-#include <error_bound.hpp>
+#include <separation_bound.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -77,16 +77,22 @@ FASTCCD_INLINE L gap_bound(const CertificateBounds& bounds, L extent)
     return broadcast<L>(bounds.linear) * max(extent, broadcast<L>(extent_floor(Lane<L>::is_single)));
 }
 
+/// Of a gap that is to exceed d.
+template <class L>
+FASTCCD_INLINE L gap_bound(const FartherBounds& bounds, L extent)
+{
+    return (broadcast<L>(bounds.distance) + broadcast<L>(bounds.gap) * extent) + broadcast<L>(bounds.gap_floor);
+}
+
 template <class L>
 struct LinearCertificate {
     LaneMask<L> apart;
     L extent;
 };
 
-/// Strict separation along one axis over the whole interval.
-template <PairKind kind, class L>
-FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>& start, const AxisComponents<L>& end,
-                                                         const CertificateBounds& bounds)
+/// Strict separation along one axis over the whole interval; by more than d with FartherBounds.
+template <PairKind kind, class L, class Bounds>
+FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>& start, const AxisComponents<L>& end, const Bounds& bounds)
 {
     const AxisGap<L> s = axis_gap<kind>(start), e = axis_gap<kind>(end);
     const L extent = max(max(s.largest, e.largest), negated(min(s.smallest, e.smallest)));
@@ -94,9 +100,8 @@ FASTCCD_INLINE LinearCertificate<L> separated_along_axis(const AxisComponents<L>
 }
 
 /// All axes at once; the extents come with it for free.
-template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const CertificateBounds& bounds,
-                                              Extents<L>& extents)
+template <PairKind kind, class L, class Bounds>
+FASTCCD_INLINE LaneMask<L> linear_certificate(const RelativeMotion<L>& r, const Bounds& bounds, Extents<L>& extents)
 {
     const auto along = [&](auto component) FASTCCD_INLINE_LAMBDA {
         return separated_along_axis<kind, L>({component(r.start[0]), component(r.start[1]), component(r.start[2])},
@@ -203,8 +208,8 @@ FASTCCD_INLINE LaneMask<L> quadratic_certificate(const QuadraticVector<L>& p, co
 /// True where the coordinates are finite and their differences within the lanes' range. Extents in
 /// that range are of finite r_i, unless one is NaN, which maxima may lose; but every component of every r_i
 /// is a factor of f0 or f3, and then their sum is NaN, the only number not at most itself. In single precision not too small either.
-template <class L>
-FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e, const ScreeningBounds& bounds)
+template <class L, class Bounds>
+FASTCCD_INLINE LaneMask<L> in_lane_range(const CoplanarityCubic<L>& f, const Extents<L>& e, const Bounds& bounds)
 {
     const L sum = f.start + f.end, largest = max(e.x, e.y, e.z);
     const LaneMask<L> in_range = less_equal(sum, sum) & less(largest, broadcast<L>(bounds.largest_extent));

@@ -30,6 +30,9 @@ struct CertificateBounds {
 /// Pairs whose coordinates differ by more along an axis are scaled down by the certified search (scalar/scaling.hpp).
 inline constexpr double largest_extent = 0x1p100;
 
+/// The same for what lanes of single precision decide: 72 V, the largest value on halves, does not overflow there.
+inline constexpr double smallest_single_extent = 0x1p-30, largest_single_extent = 0x1p40;
+
 /// What screening compares with in one precision: certificates on the whole interval, on both halves, and on a part at its start; and
 /// between which limits the largest extent of a pair is to be.
 struct ScreeningBounds {
@@ -175,9 +178,7 @@ struct ErrorBounds {
                 {(216 + 588 + slack) * single_u, (16 + 36 + slack) * single_u, (48 + 148 + slack) * single_u, 0.0},
                 {(54 * end_rho + 114 + slack) * single_u, (8 * end_rho + 12 + slack) * single_u, (24 * end_rho + 56 + slack) * single_u,
                  (2 * end_rho + 2 + slack) * single_u},
-                0x1p-30,
-                // 72 V, the largest value on halves, does not overflow.
-                largest_lane_extent < 0x1p40 ? largest_lane_extent : 0x1p40};
+                smallest_single_extent, largest_lane_extent < largest_single_extent ? largest_lane_extent : largest_single_extent};
     }
 
     // ---- Edge functions at one time and over its neighbourhood (projected_inclusion.hpp) ----------
@@ -254,8 +255,7 @@ struct ErrorBounds {
 /// components err by a few 2^-1074: far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes
 /// and go to the scalar path, which scales axes by powers of two.
 inline constexpr double length_floor = 0x1p-266;
-/// The same for lanes of single precision, which screen pairs with extents between `smallest_extent` and `largest_extent` of
-/// ErrorBounds::screening_in_single(), 2^-30 and 2^40. Areas are 2^-80 and volumes 2^-120 at least. A product of two components that underflows
+/// The same for lanes of single precision, which screen pairs with extents between 2^-30 and 2^40. Areas are 2^-80 and volumes 2^-120 at least. A product of two components that underflows
 /// errs by at most 2^-150, far below single_u 2^-80, and that times the third component Z by 2^-150 Z, some thousand times over:
 /// far below single_u 2^-80 Z. Bounds of volumes, 2^-137 at least, are rounded by 2^-150.
 inline constexpr double single_length_floor = 0x1p-40;

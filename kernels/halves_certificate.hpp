@@ -48,6 +48,18 @@ struct ApartOnHalves {
     LaneMask<L> first, second;
 };
 
+/// On either half in one coordinate projection.
+template <PairKind kind, class L>
+FASTCCD_INLINE ApartOnHalves<L> apart_on_halves_in_projection(const HalvedQuadratic<L>& p, const HalvedQuadratic<L>& q, const HalvedQuadratic<L>& t,
+                                                              const HalvedQuadratic<L>& s, L bound, L bound_sum)
+{
+    // The value in the middle first: its sign, which both halves share, is the one that others are compared with.
+    const auto on_first = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.first, h.start}; };
+    const auto on_second = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.second, h.end}; };
+    return {apart_in_projection<kind, L>(on_first(p), on_first(q), on_first(t), on_first(s), bound, bound_sum),
+            apart_in_projection<kind, L>(on_second(p), on_second(q), on_second(t), on_second(s), bound, bound_sum)};
+}
+
 /// On either half by the cubic certificate, or by the quadratic one in at least one coordinate projection. `bounds` are ErrorBounds::halves().
 template <PairKind kind, class L>
 FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p,
@@ -64,13 +76,11 @@ FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f,
         const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
             return halved(component(v.start), component(v.twice_middle), component(v.end));
         };
-        const HalvedQuadratic<L> hp = halves_of(p), hq = halves_of(q), ht = halves_of(t), hs = halves_of(s);
-        const L bound = broadcast<L>(bounds.quadratic) * area, bound_sum = broadcast<L>(bounds.quadratic_sum) * area;
-        // The value in the middle first: its sign, which both halves share, is the one that others are compared with.
-        const auto on_first = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.first, h.start}; };
-        const auto on_second = [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA -> EdgeCoefficients<L> { return {h.middle, h.second, h.end}; };
-        first = first | apart_in_projection<kind, L>(on_first(hp), on_first(hq), on_first(ht), on_first(hs), bound, bound_sum);
-        second = second | apart_in_projection<kind, L>(on_second(hp), on_second(hq), on_second(ht), on_second(hs), bound, bound_sum);
+        const ApartOnHalves<L> apart = apart_on_halves_in_projection<kind, L>(halves_of(p), halves_of(q), halves_of(t), halves_of(s),
+                                                                             broadcast<L>(bounds.quadratic) * area,
+                                                                             broadcast<L>(bounds.quadratic_sum) * area);
+        first = first | apart.first;
+        second = second | apart.second;
     };
     along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz);
     along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx);

@@ -41,8 +41,7 @@ struct ScreenedQueue {
     alignas(64) double numbers[capacity];
     unsigned size;
 };
-/// With a minimum separation: fields of SeparationRecord, before and after its first look.
-struct SeparationQueue : LaneQueue<22> {};
+/// With a minimum separation: fields of SeparationRecord after its first look.
 struct AdvancingQueue : LaneQueue<35> {};
 
 /// What the search for roots works on, next to the rows of `candidates`.
@@ -64,6 +63,11 @@ struct Refinement {
     alignas(64) double low[RootQueue::capacity], high[RootQueue::capacity];  ///< A bracket that closes around the root.
     alignas(64) double slope[RootQueue::capacity];                           ///< Positive where f rises over the piece.
     alignas(64) double guess[RootQueue::capacity];
+};
+
+/// What the last looks at the pairs of `advancing` showed: a Separation.
+struct Looks {
+    alignas(64) double n[3][AdvancingQueue::capacity], gap[AdvancingQueue::capacity], square_to_side[AdvancingQueue::capacity];
 };
 
 /// Pairs that are screened before any of them goes on. Their blocks, 12 KiB, are then still in the first-level cache.
@@ -98,8 +102,8 @@ struct TileScratch {
     RootSearch search;
     RootQueue slow;          ///< Roots that few steps do not decide, and those after a pair's first.
     Refinement refinement;
-    SeparationQueue separating;  ///< With a minimum separation: pairs that no coordinate axis keeps apart.
-    AdvancingQueue advancing;    ///< Pairs that the first look does not.
+    AdvancingQueue advancing;  ///< With a minimum separation: candidates that the first look does not settle.
+    Looks looks;
     /// The blocks of a group in the native layout, where the input is not ...
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
     /// ... and a block of the pairs that wait in `screened` while the next group takes their place.

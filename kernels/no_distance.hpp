@@ -39,7 +39,7 @@ __attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r,
     const LaneMask<L> proven = certified_at(sight.reach, s);
     if (Lane<L>::bits(proven) == 0) return !proven;
     const L close = broadcast<L>(share_of_resolution * SeparationParameters::resolution) * sum(e);
-    const L distance = sqrt(square_distance<kind>(sight.at, sight.separation));
+    const L distance = sqrt(square_distance<kind>(sight.at.r, sight.separation));
     return !(proven & (less_equal(s, broadcast<L>(0.0)) | less(close, distance)));
 }
 

@@ -24,6 +24,40 @@ inline constexpr double separation_floor = 0x1p-1020;
 inline constexpr double smallest_separation_extent = 0x1p-60;
 inline constexpr double largest_separation_extent = 0x1p60;
 
+/// What a call asks for. All distances are in units of the coordinates.
+struct SeparationParameters {
+    double distance;   ///< d; 0: contact itself, which is another search.
+    double tolerance;  ///< Relative.
+    double threshold;  ///< A gap along a computed unit vector above this proves a distance above d.
+    double stop;       ///< Closer than this is close enough to be reported.
+    double aim;        ///< Halfway to there.
+    double certain;    ///< A computed distance up to this is certainly at most d.
+
+    /// Computed unit vectors are longer than 1 by at most 5 u: the square errs by 3 u, its root by 2.5 u, the
+    /// reciprocal and the product with it add 2 u. The multiplication here, and sums of a threshold and a bound, add 3 u.
+    /// Where a vector is no unit vector (scalar/following_direction.hpp), its computed length is short by 4 u at most, and the
+    /// product with it and sums of such thresholds add 5 u.
+    FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double distance_tolerance = 0.0)
+        : distance{d}, tolerance{distance_tolerance}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance},
+          aim{d + d * (0.5 * tolerance)}, certain{d * (1.0 - 0x1p-49)}
+    {
+    }
+
+    /// A pair is also reported where its computed distance exceeds d by this times X + Y + Z, so that no search goes on
+    /// where rounding decides.
+    static constexpr double resolution = 128 * ErrorBounds::u;
+};
+
+/// What the certificates of farther_certificates.hpp compare with in one precision; see SeparationBounds::certificates().
+struct FartherBounds {
+    double distance;           ///< d, rounded up.
+    double gap, gap_floor;     ///< Of a gap along an axis: the first one times its extent.
+    double volume_on_whole;    ///< Of 3 times a coefficient of the cubic; times V.
+    double normal;             ///< Of a component of n; times the largest product of two extents, sqrt(3) included.
+    CertificateBounds halves;  ///< Of 12 times a coefficient of the cubic and 4 times one of an edge function.
+    double smallest_extent, largest_extent;  ///< For single precision, as in ScreeningBounds.
+};
+
 struct SeparationBounds {
     static constexpr double u = ErrorBounds::u;
     static constexpr double slack = 2.0;
@@ -63,30 +97,50 @@ struct SeparationBounds {
     /// mean of the corners with weights whose sum is within 4 u of 1: (rho + 3) + 4 + 4. The length errs by 3 u more of
     /// at most 3 (X + Y + Z): + 9.
     [[nodiscard]] FASTCCD_INLINE constexpr double distance() const { return (4 * rho + 33 + slack) * u; }
-};
 
-/// What a call asks for. All distances are in units of the coordinates.
-struct SeparationParameters {
-    double distance;   ///< d; 0: contact itself, which is another search.
-    double tolerance;  ///< Relative.
-    double threshold;  ///< A gap along a computed unit vector above this proves a distance above d.
-    double stop;       ///< Closer than this is close enough to be reported.
-    double aim;        ///< Halfway to there.
-    double certain;    ///< A computed distance up to this is certainly at most d.
+    // ---- Certificates of contact, with room for d (farther_certificates.hpp) ------------------------
+    //
+    // V and areas as in error_bound.hpp, whose bounds of coefficients are continued here. What d adds to a bound, d times lengths and
+    // areas, is at most ten roundings of itself, and of extents, off: `threshold`, 16 u of d above it, covers them.
 
-    /// Computed unit vectors are longer than 1 by at most 5 u: the square errs by 3 u, its root by 2.5 u, the
-    /// reciprocal and the product with it add 2 u. The multiplication here, and sums of a threshold and a bound, add 3 u.
-    /// Where a vector is no unit vector (scalar/following_direction.hpp), its computed length is short by 4 u at most, and the
-    /// product with it and sums of such thresholds add 5 u.
-    FASTCCD_INLINE constexpr explicit SeparationParameters(double d = 0.0, double distance_tolerance = 0.0)
-        : distance{d}, tolerance{distance_tolerance}, threshold{d * (1.0 + 0x1p-49)}, stop{d + d * tolerance},
-          aim{d + d * (0.5 * tolerance)}, certain{d * (1.0 - 0x1p-49)}
+    /// Halves: with all coefficients at the same multiple, 12 of the cubic's and 4 of edge functions', whose smaller ones are doubled
+    /// exactly. 12 f0 errs by 12 (18 rho + 28) + 72, its size, and twice 3 f0 + 3 f1 by 216 rho + 504; 8 times the value in the middle is f0 + f3,
+    /// 36 rho + 68, and 3 f1 + 3 f2, 108 rho + 264, with a sum of size 48; 3/2 of that 216 rho + 570, and 72 for the product: 216 rho + 642, the
+    /// largest. Edge functions as in ErrorBounds::halves(). Nothing else has to come to the same conclusion, so no margin is added.
+    ///
+    /// On the whole, 3 f0 errs by 3 (18 rho + 28) + 18, 3 f1 by 54 rho + 114. What is concluded there is to be concluded on halves, too, whose
+    /// exact coefficients are means of those on the whole: a quarter of twice the bound there is added, 108 rho + 321, and slack.
+    ///
+    /// A component of n is a sum of at most three cross products: an end coefficient errs by 12 rho + 22, half of the doubled middle one by
+    /// (24 rho + 56) / 2, as in ErrorBounds::quadratic_sum(). |n| is at most sqrt(3) times its largest component: 21 rho + 49.
+    [[nodiscard]] FASTCCD_INLINE constexpr FartherBounds certificates(const SeparationParameters& wanted) const
     {
+        return {wanted.threshold,
+                axis(),
+                separation_floor,
+                (162 * rho + 435 + 2 * slack) * u,
+                (21 * rho + 49 + slack) * u,
+                {(216 * rho + 642 + slack) * u, (16 * rho + 36 + slack) * u, (48 * rho + 148 + slack) * u, 0.0},
+                smallest_separation_extent,
+                largest_separation_extent};
     }
 
-    /// A pair is also reported where its computed distance exceeds d by this times X + Y + Z, so that no search goes on
-    /// where rounding decides.
-    static constexpr double resolution = 128 * ErrorBounds::u;
+    /// certificates() in single precision, by which nothing is concluded that is not in double. As in ErrorBounds::screening_in_single(),
+    /// rho = 1, and the slack, 2^30 u, covers the bounds above and what computed coefficients err by there, twice each. d is 16 single_u
+    /// above what it is in double, by which what it adds is more. d below 2^-126, or what it adds, underflows by 2^-150 times areas or lengths at
+    /// most, far below slack times V, 2^-143 at least, and gap_floor.
+    [[nodiscard]] FASTCCD_INLINE constexpr FartherBounds certificates_in_single(const SeparationParameters& wanted) const
+    {
+        constexpr double single_u = ErrorBounds::single_u;
+        return {wanted.threshold * (1.0 + 0x1p-20),
+                (2 + 2 + slack) * single_u,
+                0x1p-100,
+                (54 + 114 + slack) * single_u,
+                (21 + 49 + slack) * single_u,
+                {(216 + 642 + slack) * single_u, (16 + 36 + slack) * single_u, (48 + 148 + slack) * single_u, 0.0},
+                smallest_single_extent,
+                largest_single_extent};
+    }
 };
 
 }  // namespace fastccd

@@ -39,25 +39,6 @@ FASTCCD_INLINE LaneMask<L> in_separation_range(const RelativeMotion<L>& r, const
            less_equal(broadcast<L>(smallest_separation_extent), largest(e));
 }
 
-/// Farther than d along a coordinate axis over the whole interval.
-template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> farther_along_axis(const RelativeMotion<L>& r, const SeparationParameters& parameters,
-                                              const SeparationBounds& bounds, Extents<L>& extents)
-{
-    const L zero = broadcast<L>(0.0);
-    const auto along = [&](auto component, L& extent) FASTCCD_INLINE_LAMBDA {
-        const AxisGap<L> s = axis_gap<kind, L>({component(r.start[0]), component(r.start[1]), component(r.start[2])});
-        const AxisGap<L> e = axis_gap<kind, L>({component(r.end[0]), component(r.end[1]), component(r.end[2])});
-        extent = max(max(s.largest, e.largest), zero - min(s.smallest, e.smallest));
-        const L threshold = (broadcast<L>(parameters.threshold) + broadcast<L>(bounds.axis()) * extent) + broadcast<L>(separation_floor);
-        return less(threshold, min(s.above, e.above)) | less(max(s.below, e.below), zero - threshold);
-    };
-    const auto x = along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, extents.x);
-    const auto y = along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, extents.y);
-    const auto z = along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, extents.z);
-    return x | y | z;
-}
-
 /// Heights above this prove a distance above d; `bound` is one of SeparationBounds.
 template <class L>
 FASTCCD_INLINE L threshold_along(const Vector3<L>& n, const Extents<L>& e, const SeparationParameters& parameters, double bound)
@@ -124,10 +105,21 @@ FASTCCD_INLINE Reach<L> reach(const RelativeMotion<L>& r, const Vector3<L>& n, L
     return reach;
 }
 
+template <class L>
+struct Positions {
+    Vector3<L> r[3];
+};
+
+template <class L>
+FASTCCD_INLINE Positions<L> positions(const RelativeMotion<L>& r, L time)
+{
+    return {{position(r, 0, time), position(r, 1, time), position(r, 2, time)}};
+}
+
 /// What is seen of a pair at one time.
 template <class L>
 struct Sight {
-    Vector3<L> at[3];  ///< The positions.
+    Positions<L> at;
     Separation<L> separation;
     Reach<L> reach;
 };
@@ -137,19 +129,18 @@ FASTCCD_INLINE Sight<L> look(const RelativeMotion<L>& r, const Extents<L>& e, L 
                              const SeparationBounds& bounds)
 {
     Sight<L> sight;
-    for (int i = 0; i < 3; ++i) sight.at[i] = position(r, i, time);
-    sight.separation = separation<kind>(sight.at);
+    sight.at = positions(r, time);
+    sight.separation = separation<kind>(sight.at.r);
     const Vector3<L>& n = sight.separation.n;
     sight.reach = reach<kind>(r, n, threshold_along(n, e, parameters, bounds.height(kind)));
     return sight;
 }
 
-/// The vector that turns evenly from the unit vector n at time a to m at b proves a distance above d on [a, b].
-/// Coefficients of a height: n . r(a), (n . r(b) + m . r(a)) / 2, m . r(b).
+/// The vector that turns evenly from the unit vector n, where the positions are a, to m where they are b, proves a distance above d in
+/// between. Coefficients of a height: n . r(a), (n . r(b) + m . r(a)) / 2, m . r(b).
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> farther_while_turning(const RelativeMotion<L>& r, const Extents<L>& e, const Vector3<L>& n, L a,
-                                                 const Vector3<L>& m, L b, const SeparationParameters& parameters,
-                                                 const SeparationBounds& bounds)
+FASTCCD_INLINE LaneMask<L> farther_while_turning(const Vector3<L> (&a)[3], const Vector3<L> (&b)[3], const Extents<L>& e, const Vector3<L>& n,
+                                                 const Vector3<L>& m, const SeparationParameters& parameters, const SeparationBounds& bounds)
 {
     const L from = threshold_along(n, e, parameters, bounds.height_at(kind));
     const L to = threshold_along(m, e, parameters, bounds.height_at(kind));
@@ -164,8 +155,7 @@ FASTCCD_INLINE LaneMask<L> farther_while_turning(const RelativeMotion<L>& r, con
     LaneMask<L> all = all_lanes<L>();
     for_each_height<kind>(
         [&](int i) FASTCCD_INLINE_LAMBDA -> Coefficients {
-            const Vector3<L> at_a = position(r, i, a), at_b = position(r, i, b);
-            return {dot(n, at_a), dot(n, at_b), dot(m, at_a), dot(m, at_b)};
+            return {dot(n, a[i]), dot(n, b[i]), dot(m, a[i]), dot(m, b[i])};
         },
         [&](const Coefficients& c) FASTCCD_INLINE_LAMBDA {
             all = all & less(from, c.first) & less(from + to, c.middle_n + c.middle_m) & less(to, c.last);

@@ -2,17 +2,18 @@
 //
 // The search walks along the time axis. At the time it has got to it looks at the pair, and goes on to the end of the
 // reach of the vector between the primitives: conservative advancement along a fixed direction, hence Newton's method where
-// the primitives approach. It begins with a look at the middle of the interval, whose reach is all of it for most
-// pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they turn, a fixed
-// vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
-// looks ahead, and tries the vectors at both ends of an interval together. It looks ahead to where the secant through the
-// last two distances reaches d, and, after some looks, as far as has gone well.
+// the primitives approach. It begins with the certificates on halves (farther_certificates.hpp) and a look at the middle of what they leave,
+// whose reach is all of it for most pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they
+// turn, a fixed vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
+// looks ahead, to where the secant through the last two distances reaches d, or, after some looks, as far as has gone well, and tries the
+// vectors at both ends of the way there together.
 //
 // This is the definition of the result, but for the few pairs that take most_lane_looks, with which scalar/separation_search.cpp
 // goes on. Every step is a function of the pair alone, in the same operations in every lane type, so lanes and the scalar
 // search come to the same time, bit for bit.
 #pragma once
 
+#include <farther_certificates.hpp>
 #include <search_parameters.hpp>
 #include <separation_certificate.hpp>
 
@@ -36,7 +37,8 @@ struct SeparationRecord {
     L last_time, last_gap;  ///< The last time the search had got to, and the distance then, from below.
 };
 
-/// Purposes of a look: to go on from `time`; to go on from there to `at` while turning; to prove contact found at `time`.
+/// Purposes of a look: to go on from `time`; to go on from there to `at`, by more than one vector; to prove contact found
+/// at `time`.
 inline constexpr double going_on = 0.0, looking_ahead = 1.0, proving = 2.0;
 
 /// Looks after which the search looks ahead even where the distance does not fall, and how far at least: that many times
@@ -61,16 +63,21 @@ FASTCCD_INLINE L past_window(const SeparationRecord<L>& pair, L time)
     return select<L>(less(pair.window_low, time), max(time, pair.window_high), time);
 }
 
-/// The look at the middle. True where it proves that the pair stays farther than d.
+/// The look at the middle of what `farther`, certificates on halves, leave of the interval; they do not hold on both. True where it
+/// proves that the pair stays farther than d.
 template <PairKind kind, class L>
-FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const SearchParameters& parameters)
+FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const ApartOnHalves<L>& farther, const SearchParameters& parameters)
 {
     const SeparationBounds bounds{parameters.bounds.rho};
-    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-    const Reach<L> reach = look<kind>(pair.r, pair.extents, broadcast<L>(0.5), parameters.separation, bounds).reach;
-    pair.window_low = reach.low;
-    pair.window_high = reach.high;
-    pair.time = select<L>(less(reach.low, zero), max(reach.high, zero), zero);
+    const L zero = broadcast<L>(0.0), half = broadcast<L>(0.5), one = broadcast<L>(1.0), two = broadcast<L>(2.0);
+    const L start = select<L>(farther.first, half, zero);
+    const L middle = select<L>(farther.first, broadcast<L>(0.75), select<L>(farther.second, broadcast<L>(0.25), half));
+    const Reach<L> reach = look<kind>(pair.r, pair.extents, middle, parameters.separation, bounds).reach;
+    // Of what is beyond the reach and in the second half, one window, if they meet; otherwise the half, which ends the search.
+    const LaneMask<L> apart_from_half = farther.second & less(reach.high, half);
+    pair.window_low = select<L>(apart_from_half, half, reach.low);
+    pair.window_high = select<L>(farther.second, two, reach.high);
+    pair.time = past_window(pair, select<L>(less(reach.low, start), max(reach.high, start), start));
     pair.looks = one;
     pair.purpose = broadcast<L>(going_on);
     pair.at = pair.time;
@@ -88,31 +95,34 @@ struct StepOutcome {
     LaneMask<L> left;     ///< Of the others: to the scalar search.
 };
 
-/// One look, and what follows from it.
+/// What follows from a look at the pair, at the time for the next one: `separation` is what it has shown, of positions(pair.r, pair.at).
 template <PairKind kind, class L>
-FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParameters& parameters, double limit)
+FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L>& separation, const SearchParameters& parameters, double limit)
 {
     const SeparationParameters& wanted = parameters.separation;
     const SeparationBounds bounds{parameters.bounds.rho};
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-    const Sight<L> sight = look<kind>(pair.r, pair.extents, pair.at, wanted, bounds);
-    const Vector3<L>& n = sight.separation.n;
-    const L gap = sight.separation.gap;
+    const Vector3<L>& n = separation.n;
+    const L gap = separation.gap;
+    const Positions<L> at = positions(pair.r, pair.at);
+    const Reach<L> seen = reach<kind>(pair.r, n, threshold_along(n, pair.extents, wanted, bounds.height(kind)));
     pair.looks = pair.looks + one;
 
     const LaneMask<L> to_prove = less_equal(broadcast<L>(proving), pair.purpose);
     const LaneMask<L> was_ahead = less_equal(broadcast<L>(looking_ahead), pair.purpose) & !to_prove;
     LaneMask<L> turned = was_ahead;
-    if (Lane<L>::bits(was_ahead) != 0)
-        turned = was_ahead & farther_while_turning<kind>(pair.r, pair.extents, pair.n, pair.time, n, pair.at, wanted, bounds);
+    if (Lane<L>::bits(was_ahead) != 0) {
+        const Positions<L> before = positions(pair.r, pair.time);
+        turned = was_ahead & farther_while_turning<kind>(before.r, at.r, pair.extents, pair.n, n, wanted, bounds);
+    }
     const LaneMask<L> too_far = was_ahead & !turned;
 
     // The look is at the time reached, but for a look too far ahead.
     const LaneMask<L> here = !(to_prove | too_far);
     const L time = select<L>(here, pair.at, pair.time);
-    const L high = select<L>(here, sight.reach.high, pair.high);
+    const L high = select<L>(here, seen.high, pair.high);
     const L next = past_window(pair, high);
-    const LaneMask<L> certified = here & certified_at(sight.reach, pair.at);
+    const LaneMask<L> certified = here & certified_at(seen, pair.at);
     const LaneMask<L> farther = (certified & less_equal(one, next)) | (turned & less_equal(one, time)) |
                                 (here & less(broadcast<L>(limit), time));
     const LaneMask<L> at_start = here & !certified & less_equal(time, zero);
@@ -124,7 +134,7 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const SearchParame
     const LaneMask<L> measured = less_equal(gap, close) | to_prove;
     L distance = broadcast<L>(__builtin_inf());
     if (Lane<L>::bits(measured) != 0)
-        distance = select<L>(measured, sqrt(square_distance<kind>(sight.at, sight.separation)), distance);
+        distance = select<L>(measured, sqrt(square_distance<kind>(at.r, separation)), distance);
     const LaneMask<L> near = certified & less(zero, time) & less_equal(distance, close);
     const LaneMask<L> advancing = certified & !near & less(time * broadcast<L>(1.0 + 0x1p-50), next) &
                                   less(pair.looks, broadcast<L>(most_looks));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <farther_certificates.hpp>
 #include <following_direction.hpp>
 #include <interval_certificates.hpp>
 #include <no_distance.hpp>
@@ -71,7 +72,7 @@ SearchResult walk(SeparationRecord<double>& pair, const SearchParameters& parame
     const SeparationBounds bounds{parameters.bounds.rho};
     double stretch = 1.0;
     while (true) {
-        const StepOutcome<double> outcome = step<kind>(pair, parameters, limit);
+        const StepOutcome<double> outcome = step<kind>(pair, separation<kind>(positions(pair.r, pair.at).r), parameters, limit);
         const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds);
         const auto looks = static_cast<unsigned>(pair.looks);
         if (outcome.farther.value || followed) return {.toi = never, .intervals = looks};
@@ -89,10 +90,10 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
         pair.r = scaled_motion(coordinates, parameters);
         pair.extents = extents(pair.r);
     }
-    Extents<double> same;
-    if (farther_along_axis<kind>(pair.r, parameters.separation, SeparationBounds{parameters.bounds.rho}, same).value)
-        return {.toi = never};
-    if (first_look<kind>(pair, parameters).value) return {.toi = never, .intervals = 1};
+    const FartherBounds bounds = SeparationBounds{parameters.bounds.rho}.certificates(parameters.separation);
+    const ApartOnHalves<double> farther = farther_on_halves<kind>(pair.r, bounds, pair.extents);
+    if ((farther.first & farther.second).value) return {.toi = never};
+    if (first_look<kind>(pair, farther, parameters).value) return {.toi = never, .intervals = 1};
     SearchResult result = walk<kind>(pair, parameters, limit);
     if (result.toi <= 1.0) result.toi = parameters.time(result.toi);
     return result;

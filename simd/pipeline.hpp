@@ -41,6 +41,7 @@
 #include <block_source.hpp>
 #include <part_certificates.hpp>
 #include <root_stages.hpp>
+#include <screened_parts.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -111,30 +112,6 @@ private:
         return {in_range & ~apart, lanes_in_use<S>(Lane<S>::width) & ~in_range};
     }
 
-    /// Where the pairs from `i` on lie of which the lanes of an S hold so many batches of L.
-    template <class S>
-    struct Parts {
-        static constexpr unsigned count = Lane<S>::width / width;
-        const double* at[count];
-    };
-    /// Of pairs that screening reads next. What lies past the end is the first part again.
-    template <class S>
-    FASTCCD_INLINE Parts<S> next_parts(const double* blocks, std::size_t i, std::size_t count)
-    {
-        Parts<S> parts;
-        for (unsigned k = 0; k < Parts<S>::count; ++k) {
-            const std::size_t j = i + k * width < count ? i + k * width : i;
-            if (j % block_pairs == 0) source_.at_block();
-            parts.at[k] = in_blocks(blocks, j);
-            source_.at_batch(parts.at[k]);
-        }
-        return parts;
-    }
-    FASTCCD_INLINE static const double* in_blocks(const double* blocks, std::size_t i)
-    {
-        return blocks + i / block_pairs * block_coordinates + i % block_pairs;
-    }
-
     void screen_sparse_group(std::size_t first, std::size_t count, const Preferences& preferences)
     {
         if constexpr (Lane<L>::screens_scenes_in_either)
@@ -152,7 +129,7 @@ private:
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
             PairRecord<S> record;
-            record.r = relative_motion_in<S, L>(next_parts<S>(blocks, i, count).at, block_pairs, parameters_.t_max);
+            record.r = relative_motion_in<S, L>(next_parts<S>(source_, blocks, i, count).at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
             kept |= std::uint64_t{found.kept} << i;
             beyond |= std::uint64_t{found.beyond} << i;
@@ -209,7 +186,7 @@ private:
         const double* const blocks = source_.group(first);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
-            const Parts<S> parts = next_parts<S>(blocks, i, count);
+            const Parts<S, L> parts = next_parts<S>(source_, blocks, i, count);
             PairRecord<S> record;
             record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
@@ -219,58 +196,18 @@ private:
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
             if (cutoff_ < 1.0 && lanes == 0) continue;
-            take_parts(parts, first + i, mark, lanes);
+            take_parts(root_stages_, source_, parts, first + i, mark, lanes, parameters_.t_max);
         }
         // Less than what leads here, so that shares around one half do not go to and fro.
         scratch_.dense = 3 * kept >= count;
     }
 
-    /// What was examined goes on in double: both parts at once if that makes a batch at most, since a store for each field and batch
-    /// is most of what queueing takes (bench/LIMITS.md).
-    template <class S>
-    FASTCCD_INLINE void take_parts(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
-    {
-        if constexpr (Parts<S>::count == 2) {
-            if constexpr (Lane<L>::can_join) {
-                const auto count = static_cast<unsigned>(__builtin_popcount(lanes));
-                if (count <= width) [[likely]]
-                    return take_joined(parts, first, mark, lanes, count);
-            }
-            take<0>(parts, first, mark, lanes);
-            take<1>(parts, first, mark, lanes);
-        } else {
-            take<0>(parts, first, mark, lanes);
-        }
-    }
-
-    template <class S>
-    FASTCCD_INLINE void take_joined(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes, unsigned count)
-    {
-        const typename Lane<L>::template Joiner<> joiner{lanes};
-        root_stages_.take_fields(count, [&](auto append) FASTCCD_INLINE_LAMBDA {
-            const auto append_joined = [&](L low, L high) FASTCCD_INLINE_LAMBDA { return append(joiner(low, high)); };
-            combined_motion<L>(parts.at, block_pairs, parameters_.t_max, append_joined);
-            append_joined(source_.numbers(first) + Lane<L>::template widened<0>(mark),
-                          source_.numbers(first + width) + Lane<L>::template widened<1>(mark));
-        });
-    }
-
-    /// Part k of what was examined. Its motion is computed again: kept, it would be through memory as well.
-    template <unsigned k, class S>
-    FASTCCD_INLINE void take(const Parts<S>& parts, std::size_t first, S mark, unsigned lanes)
-    {
-        PairRecord<L> record;
-        record.r = relative_motion<L>(parts.at[k], block_pairs, parameters_.t_max);
-        record.pair = source_.numbers(first + k * width) + Lane<L>::template widened<k>(mark);
-        root_stages_.take(record, lanes >> k * width & lanes_in_use<L>(width));
-    }
-
     /// Pairs beyond the range in which they were examined, in double. Returns how many screening leaves.
     template <class S>
-    __attribute__((noinline)) std::size_t examine_again(const Parts<S>& parts, std::size_t first, unsigned beyond)
+    __attribute__((noinline)) std::size_t examine_again(const Parts<S, L>& parts, std::size_t first, unsigned beyond)
     {
         std::size_t kept = 0;
-        for (unsigned k = 0; k < Parts<S>::count; ++k) {
+        for (unsigned k = 0; k < Parts<S, L>::count; ++k) {
             const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
             if (lanes == 0) continue;
             PairRecord<L> record;

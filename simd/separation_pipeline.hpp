@@ -1,28 +1,23 @@
 // The stages of a minimum separation over one tile:
 //
-//     block -> coordinate axes -> [separating] -> first look -> [advancing] -> step -> contact or farther
-//                     |                               |           ^              |
-//                     v                               v           +--------------+
-//                  farther                         farther
+//     block -> certificates -> [candidates] -> certificates -> first look -> [advancing] -> look -> step -> contact or farther
+//                   |                           in double          |             ^                   |
+//                   v                               |              v             +-------------------+
+//                farther                            +-------->  farther
+//
+// Certificates are those of farther_certificates.hpp. As in pipeline.hpp they run in single precision first where that makes lanes of it, by bounds
+// by which nothing is farther there that is not in double. In double they define the result, and tell on which half a pair is farther.
 //
 // Lanes take the steps of separation_steps.hpp, in the same operations as the scalar search; they leave to it pairs out
-// of range, and those that take too many steps. A pair that needs another step goes back to the end of [advancing], from which
-// the next batch is taken, so that batches stay full until the queue runs dry.
+// of range, and those that take too many steps. Pairs that need another step stay in [advancing], closed up, and wait there for others
+// until there are enough for another round.
 #pragma once
 
-#include <block_source.hpp>
-#include <lane_results.hpp>
-#include <records.hpp>
+#include <farther_certificates.hpp>
+#include <screened_parts.hpp>
 #include <separation_steps.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
-
-template <class Record, class Visit>
-FASTCCD_INLINE void for_each_field(const SeparationQueue&, Record& record, Visit visit)
-{
-    for_each_common_field(record, visit);
-    visit(record.extents.x), visit(record.extents.y), visit(record.extents.z);
-}
 
 template <class Record, class Visit>
 FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit visit)
@@ -42,99 +37,155 @@ public:
     {
         SeparationPipeline pipeline{request, scratch};
         clear_results<L>(scratch, request.count);
-        scratch.separating.size = scratch.advancing.size = 0;
+        scratch.candidates.size = scratch.advancing.size = 0;
         const std::size_t size = pipeline.source_.size();
         for (std::size_t first = 0; first < size; first += group_pairs) {
             const double* const blocks = pipeline.source_.group(first);
-            const std::size_t end = size - first < group_pairs ? size : first + group_pairs;
-            for (std::size_t i = first; i < end; i += block_pairs) {
-                const double* const block = blocks + (i - first) * pair_coordinates;
-                pipeline.source_.at_block();
-                for (unsigned lane = 0; lane < block_pairs && i + lane < end; lane += width) {
-                    pipeline.source_.at_batch(block);
-                    pipeline.screen(block + lane, pipeline.source_.numbers(i + lane), lanes_in_use<L>(end - i - lane));
-                    if (scratch.separating.size >= SeparationQueue::drain_at) pipeline.look_first(width);
-                }
-            }
+            const std::size_t count = size - first < group_pairs ? size - first : group_pairs;
+            for (std::size_t i = 0; i < count; i += Lane<Screening>::width)
+                pipeline.screen(next_parts<Screening>(pipeline.source_, blocks, i, count), first + i, lanes_in_use<Screening>(count - i));
         }
         pipeline.look_first(1);
-        pipeline.advance(1);
+        while (scratch.advancing.size > 0) pipeline.advance();
+    }
+
+    /// What screening leaves.
+    FASTCCD_INLINE void take(const PairRecord<L>& record, unsigned lanes)
+    {
+        push(scratch_.candidates, lanes, record);
+        look_first_if_many();
+    }
+    template <class Fields>
+    FASTCCD_INLINE void take_fields(unsigned count, Fields fields)
+    {
+        fields(Appender<PairQueue, L>{scratch_.candidates, count});
+        look_first_if_many();
     }
 
 private:
+    using Screening = typename Lane<L>::Screening;
     static constexpr unsigned width = Lane<L>::width;
 
     const SearchParameters& parameters_;
-    const SeparationBounds bounds_;
+    const FartherBounds bounds_, screening_bounds_;
     const double limit_;
     TileScratch& scratch_;
     BlockSource<kind, L> source_;
 
     FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& scratch)
-        : parameters_{*request.parameters}, bounds_{parameters_.bounds.rho}, limit_{time_limit(request.cutoff)}, scratch_{scratch},
-          source_{request, scratch}
+        : parameters_{*request.parameters}, bounds_{SeparationBounds{parameters_.bounds.rho}.certificates(parameters_.separation)},
+          screening_bounds_{Lane<Screening>::is_single ? SeparationBounds{parameters_.bounds.rho}.certificates_in_single(parameters_.separation)
+                                                       : bounds_},
+          limit_{time_limit(request.cutoff)}, scratch_{scratch}, source_{request, scratch}
     {
     }
 
-    FASTCCD_INLINE void screen(const double* coordinates, L pair, unsigned lanes)
+    FASTCCD_INLINE void screen(const Parts<Screening, L>& parts, std::size_t first, unsigned lanes)
     {
-        SeparationRecord<L> record;
-        record.r = relative_motion<L>(coordinates, block_pairs, parameters_.t_max);
-        const LaneMask<L> farther = farther_along_axis<kind>(record.r, parameters_.separation, bounds_, record.extents);
-        record.pair = pair;
-        const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, record.extents));
-        if (const unsigned beyond = lanes & ~decidable; beyond != 0) leave_undecided(scratch_, record.pair, beyond);
-        const unsigned kept = decidable & ~Lane<L>::bits(farther);
-        if (3 * static_cast<unsigned>(__builtin_popcount(kept)) >= 2 * width)
-            look_first(record, kept);
-        else if (kept != 0)
-            push(scratch_.separating, kept, record);
+        using S = Screening;
+        const RelativeMotion<S> r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
+        Extents<S> extents;
+        const LaneMask<S> along_axis = linear_certificate<kind>(r, screening_bounds_, extents);
+        const Scales<S> scale = scales(extents);
+        const CoplanarityCubic<S> f = coplanarity_cubic(r, cross_product(r, 0, 1));
+        const unsigned in_range = Lane<S>::bits(in_range_of_screening(r, f, extents));
+        if (const unsigned beyond = lanes & ~in_range; beyond != 0) take_beyond(parts, first, beyond);
+        lanes &= in_range & ~Lane<S>::bits(along_axis | farther_by_volume<kind>(f, scale, screening_bounds_));
+        if (lanes == 0) return;
+        const ApartOnHalves<S> farther =
+            visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                return farther_on_halves<kind>(f, p, q, t, s, extents, scale, screening_bounds_);
+            });
+        lanes &= ~Lane<S>::bits(farther.first & farther.second);
+        if (lanes != 0) take_parts(*this, source_, parts, first, broadcast<S>(0.0), lanes, parameters_.t_max);
     }
 
-    /// Takes a batch from the end of a queue; returns the bits of the lanes that are in use.
-    template <class Queue>
-    FASTCCD_INLINE static unsigned take_last(Queue& queue, SeparationRecord<L>& record)
+    template <class S>
+    FASTCCD_INLINE LaneMask<S> in_range_of_screening(const RelativeMotion<S>& r, const CoplanarityCubic<S>& f, const Extents<S>& extents) const
     {
-        const unsigned taken = queue.size < width ? queue.size : width;
-        queue.size -= taken;
-        read(queue, queue.size, record);
-        return lanes_in_use<L>(taken);
+        if constexpr (Lane<S>::is_single)
+            return in_lane_range(f, extents, screening_bounds_);
+        else
+            return in_separation_range(r, extents);
     }
 
-    /// The look at the middle, until fewer than `least` pairs are left.
+    /// Pairs beyond the range in which they were screened: to the scalar search, or on in double. Rare, so out of the way.
+    __attribute__((noinline)) void take_beyond(const Parts<Screening, L>& parts, std::size_t first, unsigned beyond)
+    {
+        for (unsigned k = 0; k < Parts<Screening, L>::count; ++k) {
+            const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
+            if (lanes == 0) continue;
+            PairRecord<L> record;
+            record.r = relative_motion<L>(parts.at[k], block_pairs, parameters_.t_max);
+            record.pair = source_.numbers(first + k * width);
+            const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, extents(record.r)));
+            leave_undecided(scratch_, record.pair, lanes & ~decidable);
+            take(record, decidable);
+        }
+    }
+
+    FASTCCD_INLINE void look_first_if_many()
+    {
+        if (scratch_.candidates.size >= PairQueue::drain_at) look_first(width);
+    }
+
+    /// The certificates in double and the first look, of batches from the end, until fewer than `least` pairs are left.
     void look_first(unsigned least)
     {
+        PairQueue& candidates = scratch_.candidates;
         SeparationRecord<L> record;
-        while (scratch_.separating.size >= least) {
-            const unsigned lanes = take_last(scratch_.separating, record);
-            look_first(record, lanes);
+        while (candidates.size >= least) {
+            const unsigned taken = candidates.size < width ? candidates.size : width;
+            candidates.size -= taken;
+            read(candidates, candidates.size, record);
+            unsigned lanes = lanes_in_use<L>(taken);
+            const ApartOnHalves<L> farther = farther_on_halves<kind>(record.r, bounds_, record.extents);
+            lanes &= ~Lane<L>::bits(farther.first & farther.second);
+            if (lanes == 0) continue;
+            lanes &= ~Lane<L>::bits(first_look<kind>(record, farther, parameters_));
+            if (lanes == 0) continue;
+            push(scratch_.advancing, lanes, record);
+            while (scratch_.advancing.size >= AdvancingQueue::drain_at) advance();
         }
     }
 
-    FASTCCD_INLINE void look_first(SeparationRecord<L>& record, unsigned lanes)
+    /// A step of all pairs on their way; those that go on move to the front. First all looks, then what follows from them: a look is one chain
+    /// of operations, with three divisions and a root in it, and a processor overlaps it with the next as far as it sees that (bench/LIMITS.md).
+    void advance()
     {
-        lanes &= ~Lane<L>::bits(first_look<kind>(record, parameters_));
-        if (lanes == 0) return;
-        push(scratch_.advancing, lanes, record);
-        if (scratch_.advancing.size >= AdvancingQueue::drain_at) advance(width);
+        AdvancingQueue& queue = scratch_.advancing;
+        const unsigned size = queue.size;
+        for (unsigned i = 0; i < size; i += width) look_again(i);
+        queue.size = 0;
+        for (unsigned i = 0; i < size; i += width) step_on(i, lanes_in_use<L>(size - i));
     }
 
-    void advance(unsigned least)
+    FASTCCD_INLINE void look_again(unsigned i)
     {
         SeparationRecord<L> record;
-        while (scratch_.advancing.size >= least) {
-            unsigned lanes = take_last(scratch_.advancing, record);
-            do {
-                const StepOutcome<L> outcome = step<kind>(record, parameters_, limit_);
-                const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
-                if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
-                const unsigned left = lanes & Lane<L>::bits(outcome.left);
-                if (left != 0) leave_undecided(scratch_, record.pair, left);
-                lanes &= ~(contact | left | Lane<L>::bits(outcome.farther));
-                // Moving pairs to fill a batch costs about a fifth of a step.
-            } while (5 * static_cast<unsigned>(__builtin_popcount(lanes)) > 4 * width);
-            if (lanes != 0) push(scratch_.advancing, lanes, record);
-        }
+        read(scratch_.advancing, i, record);
+        const Separation<L> seen = separation<kind>(positions(record.r, record.at).r);
+        Looks& looks = scratch_.looks;
+        Lane<L>::store(&looks.n[0][i], seen.n.x);
+        Lane<L>::store(&looks.n[1][i], seen.n.y);
+        Lane<L>::store(&looks.n[2][i], seen.n.z);
+        Lane<L>::store(&looks.gap[i], seen.gap);
+        Lane<L>::store(&looks.square_to_side[i], seen.square_to_side);
+    }
+
+    FASTCCD_INLINE void step_on(unsigned i, unsigned lanes)
+    {
+        SeparationRecord<L> record;
+        read(scratch_.advancing, i, record);
+        const Looks& looks = scratch_.looks;
+        const Separation<L> seen{{Lane<L>::load(&looks.n[0][i]), Lane<L>::load(&looks.n[1][i]), Lane<L>::load(&looks.n[2][i])},
+                                 Lane<L>::load(&looks.gap[i]), Lane<L>::load(&looks.square_to_side[i])};
+        const StepOutcome<L> outcome = step<kind>(record, seen, parameters_, limit_);
+        const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
+        if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
+        const unsigned left = lanes & Lane<L>::bits(outcome.left);
+        if (left != 0) leave_undecided(scratch_, record.pair, left);
+        push(scratch_.advancing, lanes & ~(contact | left | Lane<L>::bits(outcome.farther)), record);
     }
 
     FASTCCD_INLINE void record_contacts(const SeparationRecord<L>& record, unsigned contact, unsigned proven)

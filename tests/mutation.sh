@@ -96,7 +96,7 @@ mutant 'single: part, cubic = 0' $bounds 's/\(54 \* end_rho \+ 114 \+ slack\) \*
 mutant 'single: part, quadratic = 0' $bounds 's/\(8 \* end_rho \+ 12 \+ slack\) \* single_u/0.0/' certificates_test
 mutant 'single: part, quadratic_sum = 0' $bounds 's/\(24 \* end_rho \+ 56 \+ slack\) \* single_u/0.0/' certificates_test
 mutant 'single: floor as in double' $bounds 's/single_length_floor = 0x1p-40/single_length_floor = 0/' error_bounds_test
-mutant 'single: the other part of a batch' simd/pipeline.hpp 's/L>\(parts\.at\[k\], block_pairs/L>(parts.at[0], block_pairs/' wide_lane_test
+mutant 'single: the other part of a batch' simd/screened_parts.hpp 's/L>\(parts\.at\[k\], block_pairs/L>(parts.at[0], block_pairs/' wide_lane_test
 mutant 'lanes without largest extent' $bounds 's/t_max == 1\.0 \? largest_extent : 0\.25 \* largest_extent \* t_max/1e308/' certificates_test same_bits_test truth_test stress
 mutant 'rho of shorter steps = 1' $bounds 's/t_max == 1\.0 \? 1\.0 : 10\.0/1.0/' error_bounds_test
 mutant 'hull_deviation = 0' $bounds 's/hull_deviation = 4\.0/hull_deviation = 0/' error_bounds_test
@@ -139,7 +139,7 @@ mutant 'roots of half a word not seen' simd/lane_results.hpp 's/for \(const std:
 mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source_\.is_in_place\(\)\) keep_waiting\(\);//' wide_lane_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
-mutant 'halved edge functions by sign alone' $halves 's/bound = broadcast<L>\(bounds\.quadratic\) \* area/bound = broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test
+mutant 'halved edge functions by sign alone' $halves 's/broadcast<L>\(bounds\.quadratic\) \* area,/broadcast<L>(0.0) * area,/' certificates_test same_bits_test truth_test
 mutant 'halved sums by sign alone' $halves 's/broadcast<L>\(bounds\.quadratic_sum\) \* area/broadcast<L>(0.0) * area/' certificates_test same_bits_test truth_test stress
 mutant 'halved cubic without the middle' $halves 's/\{f\.start, a, a \+ b, middle\}/{f.start, a, a, a}/' certificates_test same_bits_test
 mutant 'halved quadratic without the middle' $halves 's/return \{start, first, first \+ second, second, end\}/return {start, first, first, second, end}/' certificates_test same_bits_test
@@ -291,10 +291,24 @@ mutant 'separation: axis = 0' $separation 's/\(2 \* rho \+ 2 \+ slack\) \* u/0.0
 mutant 'separation: distance = 0' $separation 's/\(4 \* rho \+ 33 \+ slack\) \* u/0.0/' error_bounds_test separation_test
 mutant 'separation: unit vectors taken as such' $separation 's/threshold\{d \* \(1\.0 \+ 0x1p-49\)\}/threshold{d * (1.0 - 0x1p-49)}/' error_bounds_test separation_test
 steps=kernels/separation_certificate.hpp
-mutant 'separation: axis at one end' $steps 's/less\(threshold, min\(s\.above, e\.above\)\)/less(threshold, max(s.above, e.above))/' separation_test separation_bits_test
-mutant 'separation: axis without d' $steps 's/\(broadcast<L>\(parameters\.threshold\) \+ broadcast/(broadcast<L>(0.0) + broadcast/' separation_test
+mutant 'separation: heights without d' $steps 's/\(broadcast<L>\(parameters\.threshold\) \+ broadcast/(broadcast<L>(0.0) + broadcast/' separation_test
+mutant 'separation: axis without d' kernels/certificates.hpp 's/\(broadcast<L>\(bounds\.distance\) \+/(broadcast<L>(0.0) +/' error_bounds_test separation_test
 mutant 'separation: turning, middle not asked' $steps 's/ & less\(from \+ to, c\.middle_n \+ c\.middle_m\)//' error_bounds_test separation_test
-mutant 'separation: start not looked at' kernels/separation_steps.hpp 's/here & certified_at\(sight\.reach, pair\.at\)/here/' separation_test separation_bits_test
+walk=kernels/separation_steps.hpp
+mutant 'separation: start not looked at' $walk 's/here & certified_at\(seen, pair\.at\)/here/' separation_test separation_bits_test
+mutant 'separation: first half taken for the whole' $walk 's/select<L>\(farther\.first, half, zero\)/select<L>(farther.first, one, zero)/' separation_test
+mutant 'separation: second half taken for the first' $walk 's/select<L>\(apart_from_half, half, reach\.low\)/select<L>(apart_from_half, zero, reach.low)/' separation_test
+farther=kernels/farther_certificates.hpp
+mutant 'farther: volume on the whole without d' $farther 's/3\.0 \* areas \* bounds\.distance/0.0 * areas * bounds.distance/' error_bounds_test separation_bits_test
+mutant 'farther: volume on halves without d' $farther 's/12\.0 \* bounds\.distance/0.0 * bounds.distance/' error_bounds_test separation_test
+mutant 'farther: edge functions without d' $farther 's/4\.0 \* bounds\.distance/0.0 * bounds.distance/' error_bounds_test separation_test
+mutant 'farther: sides as short as their ends' $farther 's/of_difference = of_r1 \+ of_r1/of_difference = of_r1/' error_bounds_test
+mutant 'farther: other multiples of cubics' $farther 's/broadcast<L>\(12\.0\), middle/broadcast<L>(24.0), middle/' error_bounds_test
+mutant 'farther: other multiples of edge functions' $farther 's/four = broadcast<L>\(4\.0\)/four = broadcast<L>(8.0)/' error_bounds_test
+mutant 'farther: normal at the ends alone' $farther 's/max\(max\(largest\(n\.start\), largest\(n\.end\)\), .*?\);/max(largest(n.start), largest(n.end));/s' error_bounds_test
+mutant 'farther: single precision without margins' $separation 's/\(54 \+ 114 \+ slack\) \* single_u/114 * u/; s/\(21 \+ 49 \+ slack\) \* single_u/0.0/; s/\{\(216 \+ 642 \+ slack\) \* single_u, \(16 \+ 36 \+ slack\) \* single_u, \(48 \+ 148 \+ slack\) \* single_u/{0.0, 0.0, 0.0/' error_bounds_test separation_bits_test
+mutant 'farther: bounds = 0' $separation 's/\(162 \* rho \+ 435 \+ 2 \* slack\) \* u/0.0/; s/\(21 \* rho \+ 49 \+ slack\) \* u/0.0/; s/\{\(216 \* rho \+ 642 \+ slack\) \* u, \(16 \* rho \+ 36 \+ slack\) \* u, \(48 \* rho \+ 148 \+ slack\) \* u/{0.0, 0.0, 0.0/' error_bounds_test
+mutant 'separation: pairs beyond single precision dropped' simd/separation_pipeline.hpp 's/take\(record, decidable\);//' wide_lane_test
 
 # ---- Totals
 tile=scheduler/tile_runner.cpp

@@ -212,7 +212,7 @@ void expect_certificates_hold(std::uint64_t seed)
             (low == 0.0 && high == 1.0 ? whole : ends) += 1;
         }
         const auto other = portable::look<kind>(c.r, extents, in.b, wanted, bounds);
-        if (in.a < in.b && portable::farther_while_turning<kind>(c.r, extents, sight.separation.n, in.a, other.separation.n, in.b, wanted, bounds).value) {
+        if (in.a < in.b && portable::farther_while_turning<kind>(sight.at.r, other.at.r, extents, sight.separation.n, other.separation.n, wanted, bounds).value) {
             ++turning;
             ASSERT_TRUE(proves<kind>(in, sight.separation.n, d, in.a) && proves<kind>(in, other.separation.n, d, in.b)) << d << ' ' << text(in);
             // In between n is computed here with rounding, which at distances this far above d does not matter.

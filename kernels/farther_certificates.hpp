@@ -1,0 +1,121 @@
+// Certificates of a distance above d over the whole interval, from those of absence of contact.
+//
+// Two primitives are within d exactly if they touch once the second one is moved by some vector v, |v| <= d. Then
+//
+//     f becomes f + v . n,   n = r1 x r2 + r2 x r3 + r3 x r1 (vertex-face) or r1 x r2 - r1 x r3 (edge-edge),   |v . n| <= d |n|:
+//
+// what has v twice or three times is zero. An edge function, along an axis, becomes
+//
+//     (r_i + v) x (r_j + v) = r_i x r_j + v x (r_j - r_i)   or   r1 x (r_j + v) = r1 x r_j + r1 x v,
+//
+// of which the last term is at most d times the length of r_j - r_i or r1 in the projection. So where f exceeds d |n|, or edge functions d times
+// these lengths, the certificates of contact (certificates.hpp) hold for all v at once: the pair stays farther than d. A gap along an axis
+// only has to exceed d. On Bernstein coefficients as there: |n| is at most the largest |coefficient| of n, and lengths at both ends of
+// the interval bound those in between. Bounds: SeparationBounds::certificates().
+//
+// The direction of a single look (separation_certificate.hpp) proves more where primitives are close; this costs less than a look and settles most
+// pairs that no axis keeps apart.
+#pragma once
+
+#include <halves_certificate.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+template <class L>
+FASTCCD_INLINE L largest_area(const Scales<L>& scale)
+{
+    return max(scale.yz, scale.zx, scale.xy);
+}
+
+/// By the cubic on the whole interval. Components of r are at most the extents, so those of a cross product twice an area, and |n| is at
+/// most sqrt(3) times 6 (vertex-face) or 4 areas, rounding included: 10.5 or 7.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> farther_by_volume(const CoplanarityCubic<L>& f, const Scales<L>& scale, const FartherBounds& bounds)
+{
+    constexpr double areas = kind == PairKind::vertex_face ? 10.5 : 7.0;
+    const L bound = broadcast<L>(bounds.volume_on_whole) * scale.volume + broadcast<L>(3.0 * areas * bounds.distance) * largest_area(scale);
+    const L three = broadcast<L>(3.0);
+    return one_sign(bound, three * f.start, f.thrice_second, f.thrice_third, three * f.end);
+}
+
+/// n, from the edge functions p, q, t of visit_edge_functions().
+template <PairKind kind, class L>
+FASTCCD_INLINE QuadraticVector<L> normal(const QuadraticVector<L>& p, const QuadraticVector<L>& q, const QuadraticVector<L>& t)
+{
+    if constexpr (kind == PairKind::vertex_face)
+        return {add(add(p.start, q.start), t.start), add(add(p.twice_middle, q.twice_middle), t.twice_middle), add(add(p.end, q.end), t.end)};
+    else
+        return {subtract(p.start, t.start), subtract(p.twice_middle, t.twice_middle), subtract(p.end, t.end)};
+}
+
+/// Not below |n| over the whole interval.
+template <class L>
+FASTCCD_INLINE L longest(const QuadraticVector<L>& n, const Scales<L>& scale, const FartherBounds& bounds)
+{
+    const auto largest = [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return max(abs(v.x), abs(v.y), abs(v.z)); };
+    const L component = max(max(largest(n.start), largest(n.end)), broadcast<L>(0.5) * largest(n.twice_middle));
+    return broadcast<L>(1.7320508075688774) * component + broadcast<L>(bounds.normal) * largest_area(scale);
+}
+
+/// Coefficients on halves come in different multiples, which do not matter where they are compared with nothing but rounding; d is the same for
+/// all of them. All at 12 times a coefficient, and 4 times:
+template <class L>
+FASTCCD_INLINE HalvedCubic<L> evened(const HalvedCubic<L>& f)
+{
+    const L two = broadcast<L>(2.0), twelve = broadcast<L>(12.0), middle = broadcast<L>(1.5) * f.first[3];
+    return {{twelve * f.first[0], two * f.first[1], f.first[2], middle}, {middle, f.second[1], two * f.second[2], twelve * f.second[3]}};
+}
+template <class L>
+FASTCCD_INLINE HalvedQuadratic<L> evened(const HalvedQuadratic<L>& f)
+{
+    const L two = broadcast<L>(2.0), four = broadcast<L>(4.0);
+    return {four * f.start, two * f.first, f.middle, two * f.second, four * f.end};
+}
+
+/// On each half, by the cubic or in a coordinate projection.
+template <PairKind kind, class L>
+FASTCCD_INLINE ApartOnHalves<L> farther_on_halves(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p, const QuadraticVector<L>& q,
+                                                  const QuadraticVector<L>& t, const QuadraticVector<L>& s, const Extents<L>& extents,
+                                                  const Scales<L>& scale, const FartherBounds& bounds)
+{
+    const HalvedCubic<L> cubic = evened(halved(f));
+    const L volume_bound = broadcast<L>(bounds.halves.cubic) * scale.volume +
+                           broadcast<L>(12.0 * bounds.distance) * longest(normal<kind>(p, q, t), scale, bounds);
+    const auto beyond = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(volume_bound, c[0], c[1], c[2], c[3]); };
+    LaneMask<L> first = beyond(cubic.first), second = beyond(cubic.second);
+
+    const auto along = [&](auto component, L area, L sum_of_extents) FASTCCD_INLINE_LAMBDA {
+        const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
+            return evened(halved(component(v.start), component(v.twice_middle), component(v.end)));
+        };
+        // In the projection r1 is at most as long as the sum of its extents, and a difference of two r_i twice that.
+        const L of_r1 = broadcast<L>(4.0 * bounds.distance) * sum_of_extents, of_difference = of_r1 + of_r1;
+        const L rounding = broadcast<L>(bounds.halves.quadratic) * area, rounding_sum = broadcast<L>(bounds.halves.quadratic_sum) * area;
+        const ApartOnHalves<L> apart = apart_on_halves_in_projection<kind, L>(
+            halves_of(p), halves_of(q), halves_of(t), halves_of(s),
+            rounding + (kind == PairKind::vertex_face ? of_difference : of_r1), rounding_sum + of_difference);
+        first = first | apart.first;
+        second = second | apart.second;
+    };
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz, extents.y + extents.z);
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx, extents.z + extents.x);
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy, extents.x + extents.y);
+    return {first, second};
+}
+
+/// Farther than d on each half by any of the certificates: a gap along an axis, or those of halves. What farther_by_volume() proves is included,
+/// by its bound. `extents` are set.
+template <PairKind kind, class L>
+FASTCCD_INLINE ApartOnHalves<L> farther_on_halves(const RelativeMotion<L>& r, const FartherBounds& bounds, Extents<L>& extents)
+{
+    const LaneMask<L> along_axis = linear_certificate<kind>(r, bounds, extents);
+    const Scales<L> scale = scales(extents);
+    const CoplanarityCubic<L> f = coplanarity_cubic(r, cross_product(r, 0, 1));
+    const ApartOnHalves<L> farther =
+        visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+            return farther_on_halves<kind>(f, p, q, t, s, extents, scale, bounds);
+        });
+    return {along_axis | farther.first, along_axis | farther.second};
+}
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
