@@ -118,4 +118,34 @@ FASTCCD_INLINE ApartOnHalves<L> farther_on_halves(const RelativeMotion<L>& r, co
     return {along_axis | farther.first, along_axis | farther.second};
 }
 
+/// n between two times at which the positions are `a` and `b`.
+template <PairKind kind, class L>
+FASTCCD_INLINE QuadraticVector<L> normal_between(const Vector3<L> (&a)[3], const Vector3<L> (&b)[3])
+{
+    if constexpr (kind == PairKind::vertex_face)
+        return cross_product(RelativeMotion<L>{{subtract(a[1], a[0]), subtract(a[2], a[1])}, {subtract(b[1], b[0]), subtract(b[2], b[1])}}, 0, 1);
+    else
+        return cross_product(RelativeMotion<L>{{a[0], subtract(a[1], a[2])}, {b[0], subtract(b[1], b[2])}}, 0, 1);
+}
+
+/// Between two times, by f alone, with |n| followed: f - d |n| is positive where the coefficients of f exceed d times
+/// those of sum_i B_i |n_i|, of degree 2 raised to 3. Where the primitives approach face to vertex or edge across edge, their distance is |f| / |n|, so
+/// this holds until shortly before they come within d, however fast n turns. `extents`: of the whole motion.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> farther_between(const Vector3<L> (&a)[3], const Vector3<L> (&b)[3], const Extents<L>& extents, double distance,
+                                           const SeparationBounds& bounds)
+{
+    const QuadraticVector<L> n = normal_between<kind>(a, b);
+    const CoplanarityCubic<L> f = coplanarity_cubic(RelativeMotion<L>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}}, n);  // n . r3
+    // Squares may underflow, each by 2^-1075: a root errs by at most 2^-536 then.
+    const auto length = [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return sqrt(dot(v, v)) + broadcast<L>(0x1p-500); };
+    const L at_a = length(n.start), at_b = length(n.end), twice_middle = length(n.twice_middle);
+    const Scales<L> scale = scales(extents);
+    const L d = broadcast<L>(distance), three = broadcast<L>(3.0);
+    const L bound = broadcast<L>(bounds.volume_between()) * scale.volume + (d * broadcast<L>(bounds.normal_between())) * largest_area(scale);
+    const auto beyond = [&](L coefficient, L lengths) FASTCCD_INLINE_LAMBDA { return less(d * lengths + bound, times_sign(coefficient, f.start)); };
+    return beyond(three * f.start, three * at_a) & beyond(f.thrice_second, at_a + twice_middle) &
+           beyond(f.thrice_third, twice_middle + at_b) & beyond(three * f.end, three * at_b);
+}
+
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

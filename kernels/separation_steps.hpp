@@ -5,8 +5,8 @@
 // the primitives approach. It begins with the certificates on halves (farther_certificates.hpp) and a look at the middle of what they leave,
 // whose reach is all of it for most pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they
 // turn, a fixed vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
-// looks ahead, to where the secant through the last two distances reaches d, or, after some looks, as far as has gone well, and tries the
-// vectors at both ends of the way there together.
+// looks ahead, to where the secant through the last two distances reaches d, or, after some looks, as far as has gone well, and proves the way
+// there by the volume or by the vectors at both ends of it. Where it sees that this was beyond contact, it looks once more, in between.
 //
 // This is the definition of the result, but for the few pairs that take most_lane_looks, with which scalar/separation_search.cpp
 // goes on. Every step is a function of the pair alone, in the same operations in every lane type, so lanes and the scalar
@@ -37,9 +37,9 @@ struct SeparationRecord {
     L last_time, last_gap;  ///< The last time the search had got to, and the distance then, from below.
 };
 
-/// Purposes of a look: to go on from `time`; to go on from there to `at`, by more than one vector; to prove contact found
-/// at `time`.
-inline constexpr double going_on = 0.0, looking_ahead = 1.0, proving = 2.0;
+/// Purposes of a look: to go on from `time`; to go on from there to `at`, by more than one vector, or to less after `at` was too far; to prove
+/// contact found at `time`.
+inline constexpr double going_on = 0.0, looking_ahead = 1.0, looking_less_far = 1.5, proving = 2.0;
 
 /// Looks after which the search looks ahead even where the distance does not fall, and how far at least: that many times
 /// the reach of the vector at `time`.
@@ -113,7 +113,10 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     LaneMask<L> turned = was_ahead;
     if (Lane<L>::bits(was_ahead) != 0) {
         const Positions<L> before = positions(pair.r, pair.time);
-        turned = was_ahead & farther_while_turning<kind>(before.r, at.r, pair.extents, pair.n, n, wanted, bounds);
+        turned = was_ahead & farther_between<kind>(before.r, at.r, pair.extents, wanted.threshold, bounds);
+        const LaneMask<L> others = was_ahead & !turned & less(broadcast<L>(wanted.threshold), gap);
+        if (Lane<L>::bits(others) != 0)
+            turned = turned | (others & farther_while_turning<kind>(before.r, at.r, pair.extents, pair.n, n, wanted, bounds));
     }
     const LaneMask<L> too_far = was_ahead & !turned;
 
@@ -152,6 +155,10 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
     const L ahead = min(time + span, one);
     const LaneMask<L> look_ahead = advancing & (stretching | (falling & less(reach, span))) & less(next, ahead);
+    // A look too far, at which the pair was too close already, leaves the time between to look at, once.
+    const L at_aim = time + (pair.last_gap - aim) * ((pair.at - time) / (pair.last_gap - gap));
+    const LaneMask<L> less_far = too_far & less(pair.purpose, broadcast<L>(looking_less_far)) & less(gap, aim) & less(next, at_aim) &
+                                 less(at_aim, pair.at) & less(pair.looks, broadcast<L>(most_looks));
     const L later = min(time + select<L>(near, broadcast<L>(proof_stretch) * reach, broadcast<L>(parameters.leaf_width)), one);
 
     pair.n = n;
@@ -159,9 +166,11 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), interval);
     pair.last_time = select<L>(here, time, pair.last_time);
     pair.last_gap = select<L>(here, gap, pair.last_gap);
-    pair.time = select<L>(too_far | (advancing & !look_ahead), next, time);
-    pair.at = select<L>(found, later, select<L>(look_ahead, ahead, pair.time));
-    pair.purpose = select<L>(found, broadcast<L>(proving), select<L>(look_ahead, broadcast<L>(looking_ahead), broadcast<L>(going_on)));
+    pair.time = select<L>((too_far & !less_far) | (advancing & !look_ahead), next, time);
+    pair.at = select<L>(found, later, select<L>(look_ahead, ahead, select<L>(less_far, at_aim, pair.time)));
+    pair.purpose = select<L>(found, broadcast<L>(proving),
+                             select<L>(look_ahead, broadcast<L>(looking_ahead),
+                                       select<L>(less_far, broadcast<L>(looking_less_far), broadcast<L>(going_on))));
 
     const LaneMask<L> certain =
         less_equal(distance, broadcast<L>(wanted.certain) - broadcast<L>(bounds.distance()) * size);

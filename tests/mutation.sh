@@ -298,6 +298,7 @@ walk=kernels/separation_steps.hpp
 mutant 'separation: start not looked at' $walk 's/here & certified_at\(seen, pair\.at\)/here/' separation_test separation_bits_test
 mutant 'separation: first half taken for the whole' $walk 's/select<L>\(farther\.first, half, zero\)/select<L>(farther.first, one, zero)/' separation_test
 mutant 'separation: second half taken for the first' $walk 's/select<L>\(apart_from_half, half, reach\.low\)/select<L>(apart_from_half, zero, reach.low)/' separation_test
+mutant 'separation: too far taken for farther' $walk 's/turned = was_ahead & farther_between/turned = was_ahead | farther_between/' separation_test separation_bits_test
 farther=kernels/farther_certificates.hpp
 mutant 'farther: volume on the whole without d' $farther 's/3\.0 \* areas \* bounds\.distance/0.0 * areas * bounds.distance/' error_bounds_test separation_bits_test
 mutant 'farther: volume on halves without d' $farther 's/12\.0 \* bounds\.distance/0.0 * bounds.distance/' error_bounds_test separation_test
@@ -306,8 +307,11 @@ mutant 'farther: sides as short as their ends' $farther 's/of_difference = of_r1
 mutant 'farther: other multiples of cubics' $farther 's/broadcast<L>\(12\.0\), middle/broadcast<L>(24.0), middle/' error_bounds_test
 mutant 'farther: other multiples of edge functions' $farther 's/four = broadcast<L>\(4\.0\)/four = broadcast<L>(8.0)/' error_bounds_test
 mutant 'farther: normal at the ends alone' $farther 's/max\(max\(largest\(n\.start\), largest\(n\.end\)\), .*?\);/max(largest(n.start), largest(n.end));/s' error_bounds_test
+mutant 'farther: between, at the ends alone' $farther 's/ & beyond\(f\.thrice_second.*?& beyond/ & beyond/s' error_bounds_test
+mutant 'farther: between, without d' $farther 's/less\(d \* lengths \+ bound/less(bound/' error_bounds_test separation_test
 mutant 'farther: single precision without margins' $separation 's/\(54 \+ 114 \+ slack\) \* single_u/114 * u/; s/\(21 \+ 49 \+ slack\) \* single_u/0.0/; s/\{\(216 \+ 642 \+ slack\) \* single_u, \(16 \+ 36 \+ slack\) \* single_u, \(48 \+ 148 \+ slack\) \* single_u/{0.0, 0.0, 0.0/' error_bounds_test separation_bits_test
 mutant 'farther: bounds = 0' $separation 's/\(162 \* rho \+ 435 \+ 2 \* slack\) \* u/0.0/; s/\(21 \* rho \+ 49 \+ slack\) \* u/0.0/; s/\{\(216 \* rho \+ 642 \+ slack\) \* u, \(16 \* rho \+ 36 \+ slack\) \* u, \(48 \* rho \+ 148 \+ slack\) \* u/{0.0, 0.0, 0.0/' error_bounds_test
+mutant 'farther: bounds between = 0' $separation 's/\(216 \* \(rho \+ 3\) \+ 600 \+ slack\) \* u/0.0/; s/\(84 \* \(rho \+ 3\) \+ 195 \+ slack\) \* u/0.0/' error_bounds_test
 mutant 'separation: pairs beyond single precision dropped' simd/separation_pipeline.hpp 's/take\(record, decidable\);//' wide_lane_test
 
 # ---- Totals

@@ -119,6 +119,24 @@ void expect_bounds_of_normals(const std::string& name)
             worst = std::max(worst, error_of_normal<kind>(in, n, 0.0, 1.0, k, 2.0 * bounds_of(c).normal * largest_area_of(c.scale)));
         return worst;
     });
+    expect_bound(("n between, " + name).c_str(), 0.01, [](const Input& in) {
+        const Computed c{in};
+        const auto n = portable::normal_between<kind>(portable::positions(c.r, in.a).r, portable::positions(c.r, in.b).r);
+        const double bound = SeparationBounds{c.bounds.rho}.normal_between() * largest_area_of(c.scale);
+        // 3 |n_0| and |n_0| + 2 |n_1|
+        const double start = error_of_normal<kind>(in, n, in.a, in.b, 0, 2.0 * bound), middle = error_of_normal<kind>(in, n, in.a, in.b, 1, bound);
+        return std::max(3.0 * start, start + middle);
+    });
+    expect_bound(("3 f between, " + name).c_str(), 0.01, [](const Input& in) {
+        const Computed c{in};
+        const auto a = portable::positions(c.r, in.a), b = portable::positions(c.r, in.b);
+        const auto f = portable::coplanarity_cubic(portable::RelativeMotion<double>{{a.r[0], a.r[1], a.r[2]}, {b.r[0], b.r[1], b.r[2]}},
+                                                   portable::normal_between<kind>(a.r, b.r));
+        const auto exact = thrice_cubic({in.x.data(), in.t_max}, in.a, in.b);
+        const double bound = SeparationBounds{c.bounds.rho}.volume_between() * c.scale.volume;
+        return std::max({(exact[0] - Exact(3.0 * f.start)).magnitude_in(bound), (exact[1] - Exact(f.thrice_second)).magnitude_in(bound),
+                         (exact[2] - Exact(f.thrice_third)).magnitude_in(bound), (exact[3] - Exact(3.0 * f.end)).magnitude_in(bound)});
+    });
 }
 
 TEST(FartherCertificates, Normals)
@@ -146,7 +164,7 @@ template <PairKind kind>
 void expect_certificates_hold(std::uint64_t seed)
 {
     Adversary adversary{seed};
-    std::size_t first_half = 0, second_half = 0, closer = 0;
+    std::size_t first_half = 0, second_half = 0, between = 0, closer = 0;
     for (std::size_t k = 0; k < amount(25000); ++k) {
         const Input in = adversary.input(1.0, -4, 4);
         const Computed c{in};
@@ -167,12 +185,16 @@ void expect_certificates_hold(std::uint64_t seed)
         if (on_halves.first.value) expect_farther("first half", 0.0, 0.5, first_half);
         if (on_halves.second.value) expect_farther("second half", 0.5, 1.0, second_half);
         if (!(on_halves.first & on_halves.second).value && exactly(kind, in, d, 0.0, 1.0) == oracle::Farther::closer) ++closer;
+        if (in.a < in.b && portable::farther_between<kind>(portable::positions(c.r, in.a).r, portable::positions(c.r, in.b).r, extents,
+                                                           wanted.threshold, bounds).value)
+            expect_farther("between", in.a, in.b, between);
         if (::testing::Test::HasFatalFailure()) return;
     }
-    std::printf("%s: %zu first halves, %zu second; of pairs that come closer, %zu without certificate\n",
-                kind == PairKind::vertex_face ? "vertex-face" : "edge-edge", first_half, second_half, closer);
+    std::printf("%s: %zu first halves, %zu second, %zu between two times; of pairs that come closer, %zu without certificate\n",
+                kind == PairKind::vertex_face ? "vertex-face" : "edge-edge", first_half, second_half, between, closer);
     EXPECT_GT(first_half, amount(2000));
     EXPECT_GT(second_half, amount(2000));
+    EXPECT_GT(between, amount(2000));
     EXPECT_GT(closer, amount(2000));
 }
 
