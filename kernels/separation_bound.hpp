@@ -140,7 +140,8 @@ struct SeparationBounds {
     [[nodiscard]] FASTCCD_INLINE constexpr FartherBounds certificates_in_single(const SeparationParameters& wanted) const
     {
         constexpr double single_u = ErrorBounds::single_u;
-        return {wanted.threshold * (1.0 + 0x1p-20),
+        // No pair of its range is as far apart as 2^100, which it can multiply by what there is.
+        return {(wanted.threshold < 0x1p100 ? wanted.threshold : 0x1p100) * (1.0 + 0x1p-20),
                 (2 + 2 + slack) * single_u,
                 0x1p-100,
                 (54 + 114 + slack) * single_u,
