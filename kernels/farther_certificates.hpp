@@ -8,7 +8,7 @@
 //
 //     (r_i + v) x (r_j + v) = r_i x r_j + v x (r_j - r_i)   or   r1 x (r_j + v) = r1 x r_j + r1 x v,
 //
-// of which the last term is at most d times the length of r_j - r_i or r1 in the projection. So where f exceeds d |n|, or edge functions d times
+// (the fourth of two edges, (r3 - r2) x (r1 - r2 - v), by (r3 - r2) x v), of which the last term is at most d times the length of r_j - r_i or r1 in the projection. So where f exceeds d |n|, or edge functions d times
 // these lengths, the certificates of contact (certificates.hpp) hold for all v at once: the pair stays farther than d. A gap along an axis
 // only has to exceed d. On Bernstein coefficients as there: |n| is at most the largest |coefficient| of n, and lengths at both ends of
 // the interval bound those in between. Bounds: SeparationBounds::certificates().
@@ -28,7 +28,7 @@ FASTCCD_INLINE L largest_area(const Scales<L>& scale)
 }
 
 /// By the cubic on the whole interval. Components of r are at most the extents, so those of a cross product twice an area, and |n| is at
-/// most sqrt(3) times 6 (vertex-face) or 4 areas, rounding included: 10.5 or 7.
+/// most sqrt(3) times 6 (vertex-face) or 4 areas: below 10.5 and 7 by 1 %, which covers what extents and products err by.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> farther_by_volume(const CoplanarityCubic<L>& f, const Scales<L>& scale, const FartherBounds& bounds)
 {

@@ -100,8 +100,8 @@ struct SeparationBounds {
 
     // ---- Certificates of contact, with room for d (farther_certificates.hpp) ------------------------
     //
-    // V and areas as in error_bound.hpp, whose bounds of coefficients are continued here. What d adds to a bound, d times lengths and
-    // areas, is at most ten roundings of itself, and of extents, off: `threshold`, 16 u of d above it, covers them.
+    // V and areas as in error_bound.hpp, whose bounds of coefficients are continued here. What d adds to a bound is d times a sum of extents,
+    // which err by rho <= 10, or a length with a bound of its own, and three more roundings: `threshold`, 16 u of d above it, covers them.
 
     /// Halves: with all coefficients at the same multiple, 12 of the cubic's and 4 of edge functions', whose smaller ones are doubled
     /// exactly. 12 f0 errs by 12 (18 rho + 28) + 72, its size, and twice 3 f0 + 3 f1 by 216 rho + 504; 8 times the value in the middle is f0 + f3,
@@ -135,12 +135,13 @@ struct SeparationBounds {
 
     /// certificates() in single precision, by which nothing is concluded that is not in double. As in ErrorBounds::screening_in_single(),
     /// rho = 1, and the slack, 2^30 u, covers the bounds above and what computed coefficients err by there, twice each. d is 16 single_u
-    /// above what it is in double, by which what it adds is more. d below 2^-126, or what it adds, underflows by 2^-150 times areas or lengths at
-    /// most, far below slack times V, 2^-143 at least, and gap_floor.
+    /// above what it is in double, by which what it adds is more. Where d is below 2^-126 it is off by 2^-150, and what it adds by some 2^-145 of areas
+    /// or lengths, or by some 2^-145 itself where that underflows: slack times V is 2^-63 of each area and 2^-143 at least, as extents are 2^-40 at
+    /// least, with edge functions and lengths alike, and gaps have their floor.
     [[nodiscard]] FASTCCD_INLINE constexpr FartherBounds certificates_in_single(const SeparationParameters& wanted) const
     {
         constexpr double single_u = ErrorBounds::single_u;
-        // No pair of its range is as far apart as 2^100, which it can multiply by what there is.
+        // No pair of its range is as far apart as 2^100, which can be converted; what products with it overflow to, nothing exceeds.
         return {(wanted.threshold < 0x1p100 ? wanted.threshold : 0x1p100) * (1.0 + 0x1p-20),
                 (2 + 2 + slack) * single_u,
                 0x1p-100,

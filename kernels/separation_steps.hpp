@@ -53,7 +53,8 @@ inline constexpr double proof_stretch = 32;
 /// (scalar/following_direction.hpp). Of random pairs in the unit cube one in 100,000 or fewer comes to so many with d from 1e-6 on.
 inline constexpr double most_lane_looks = 64;
 
-/// Hard cap on the looks at one pair; on reaching it the time reached is the answer: contact.
+/// Cap on the looks at one pair, the first one included; on reaching it the time reached is the answer: contact. After it come at most
+/// the look at that time, where the last one was too far ahead, and the one for the proof.
 inline constexpr double most_looks = 4096;
 
 /// Where a step that ends at `time` leads: over the window, if it begins before.
@@ -161,7 +162,7 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
                                  less(at_aim, pair.at) & less(pair.looks, broadcast<L>(most_looks));
     const L later = min(time + select<L>(near, broadcast<L>(proof_stretch) * reach, broadcast<L>(parameters.leaf_width)), one);
 
-    pair.n = n;
+    pair.n = select(here, n, pair.n);
     pair.high = high;
     pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), interval);
     pair.last_time = select<L>(here, time, pair.last_time);

@@ -431,6 +431,7 @@ TEST(Separation, CapOnLooks)
             EXPECT_EQ(counts.thin, 0u);
         } else {
             EXPECT_GE(looks, 4096u);
+            EXPECT_LE(looks, 4098u);
             EXPECT_LE(counts.worst_thin, 1e-12);
         }
     }
