@@ -8,10 +8,11 @@
 //
 //     (r_i + v) x (r_j + v) = r_i x r_j + v x (r_j - r_i)   or   r1 x (r_j + v) = r1 x r_j + r1 x v,
 //
-// (the fourth of two edges, (r3 - r2) x (r1 - r2 - v), by (r3 - r2) x v), of which the last term is at most d times the length of r_j - r_i or r1 in the projection. So where f exceeds d |n|, or edge functions d times
-// these lengths, the certificates of contact (certificates.hpp) hold for all v at once: the pair stays farther than d. A gap along an axis
-// only has to exceed d. On Bernstein coefficients as there: |n| is at most the largest |coefficient| of n, and lengths at both ends of
-// the interval bound those in between. Bounds: SeparationBounds::certificates().
+// (the fourth of two edges, (r3 - r2) x (r1 - r2 - v), by (r3 - r2) x v), of which the last term is at most d times the length of r_j - r_i
+// or r1 in the projection. So where f exceeds d |n|, or edge functions d times these lengths, the certificates of contact (certificates.hpp)
+// hold for all v at once: the pair stays farther than d. A gap along an axis only has to exceed d. On Bernstein coefficients as there: |n| is
+// at most the largest |coefficient| of n, and lengths at both ends of the interval bound those in between.
+// Bounds: SeparationBounds::certificates().
 //
 // The direction of a single look (separation_certificate.hpp) proves more where primitives are close; this costs less than a look and settles most
 // pairs that no axis keeps apart.
@@ -128,9 +129,9 @@ FASTCCD_INLINE QuadraticVector<L> normal_between(const Vector3<L> (&a)[3], const
         return cross_product(RelativeMotion<L>{{a[0], subtract(a[1], a[2])}, {b[0], subtract(b[1], b[2])}}, 0, 1);
 }
 
-/// Between two times, by f alone, with |n| followed: f - d |n| is positive where the coefficients of f exceed d times
-/// those of sum_i B_i |n_i|, of degree 2 raised to 3. Where the primitives approach face to vertex or edge across edge, their distance is |f| / |n|, so
-/// this holds until shortly before they come within d, however fast n turns. `extents`: of the whole motion.
+/// Between two times, by f alone, with |n| followed: f - d |n| is positive where the coefficients of f exceed d times those of
+/// sum_i B_i |n_i|, of degree 2 raised to 3. Where the primitives approach face to vertex or edge across edge, their distance is |f| / |n|,
+/// so this holds until shortly before they come within d, however fast n turns. `extents`: of the whole motion.
 template <PairKind kind, class L>
 FASTCCD_INLINE LaneMask<L> farther_between(const Vector3<L> (&a)[3], const Vector3<L> (&b)[3], const Extents<L>& extents, double distance,
                                            const SeparationBounds& bounds)

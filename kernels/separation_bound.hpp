@@ -125,19 +125,19 @@ struct SeparationBounds {
                 largest_separation_extent};
     }
 
-    /// 3 times a coefficient of f between two times (farther_between()), times V. Components there err by rho' = rho + 3, a side, of size 2, by 2 rho' + 2,
-    /// a product of two by 8 rho' + 12, and of the vector product of two sides an end coefficient, of size 8, by 16 rho' + 32, the doubled middle one by
-    /// 32 rho' + 80. n . r3: 72 rho' + 160 and 3 (48 rho' + 96) + 80, with sums of sizes 16, 24 and 32, 48; 3 f1 is the sum of both, of
-    /// size 72: 216 rho' + 600, and 3 f0 errs by 216 rho' + 552. Of edges, r1 is no difference: less.
+    /// 3 times a coefficient of f between two times (farther_between()), times V. Components there err by rho' = rho + 3, a side, of size 2,
+    /// by 2 rho' + 2, a product of two by 8 rho' + 12, and of the vector product of two sides an end coefficient, of size 8, by 16 rho' + 32,
+    /// the doubled middle one by 32 rho' + 80. n . r3: 72 rho' + 160 and 3 (48 rho' + 96) + 80, with sums of sizes 16, 24 and 32, 48; 3 f1 is
+    /// the sum of both, of size 72: 216 rho' + 600, and 3 f0 errs by 216 rho' + 552. Of edges, r1 is no difference: less.
     [[nodiscard]] FASTCCD_INLINE constexpr double volume_between() const { return (216 * (rho + 3) + 600 + slack) * u; }
     /// 3 |n_0| or |n_0| + 2 |n_1| there; times the largest product of two extents: sqrt(3) times what components err by, above.
     [[nodiscard]] FASTCCD_INLINE constexpr double normal_between() const { return (84 * (rho + 3) + 195 + slack) * u; }
 
     /// certificates() in single precision, by which nothing is concluded that is not in double. As in ErrorBounds::screening_in_single(),
     /// rho = 1, and the slack, 2^30 u, covers the bounds above and what computed coefficients err by there, twice each. d is 16 single_u
-    /// above what it is in double, by which what it adds is more. Where d is below 2^-126 it is off by 2^-150, and what it adds by some 2^-145 of areas
-    /// or lengths, or by some 2^-145 itself where that underflows: slack times V is 2^-63 of each area and 2^-143 at least, as extents are 2^-40 at
-    /// least, with edge functions and lengths alike, and gaps have their floor.
+    /// above what it is in double, by which what it adds is more. Where d is below 2^-126 it is off by 2^-150, and what it adds by some 2^-145
+    /// of areas or lengths, or by some 2^-145 itself where that underflows: slack times V is 2^-63 of each area and 2^-143 at least, as extents
+    /// are 2^-40 at least, with edge functions and lengths alike, and gaps have their floor.
     [[nodiscard]] FASTCCD_INLINE constexpr FartherBounds certificates_in_single(const SeparationParameters& wanted) const
     {
         constexpr double single_u = ErrorBounds::single_u;
