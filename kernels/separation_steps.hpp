@@ -115,6 +115,7 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     if (Lane<L>::bits(was_ahead) != 0) {
         const Positions<L> before = positions(pair.r, pair.time);
         turned = was_ahead & farther_between<kind>(before.r, at.r, pair.extents, wanted.threshold, bounds);
+        // Where the pair was within d at the look, no vectors prove the way to it: often all that is left.
         const LaneMask<L> others = was_ahead & !turned & less(broadcast<L>(wanted.threshold), gap);
         if (Lane<L>::bits(others) != 0)
             turned = turned | (others & farther_while_turning<kind>(before.r, at.r, pair.extents, pair.n, n, wanted, bounds));
