@@ -56,7 +56,7 @@ void run_pipeline(PairKind kind, Isa isa, const PairView& view, const SearchPara
         job.kernels->run_tile({kind, &source, first, count, &parameters, 1.0, preferences()}, scratch);
         decide_touching(job, first, count, scratch);
         for (std::size_t i = 0; i < count; ++i)
-            if ((scratch.is_undecided[i / 64] >> i % 64 & 1) != 0) visit(first + i);
+            if (is_set(scratch.is_undecided, i)) visit(first + i);
     }
 }
 

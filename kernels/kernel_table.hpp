@@ -21,11 +21,12 @@ inline constexpr std::size_t tile_pairs = 4096;
 template <unsigned field_count>
 struct LaneQueue {
     static constexpr unsigned fields = field_count;
-    /// A stage drains the queue when it holds this many entries; one batch adds at most 1 per lane ...
+    /// A stage drains the queue when it holds this many entries ...
     static constexpr unsigned drain_at = 64;
-    static constexpr unsigned most_added = most_lanes;
-    /// ... and storing the last ones, or reading them, touches a full batch.
-    static constexpr unsigned capacity = drain_at + most_added + 8;
+    /// ... and until that is asked, a batch of screening adds at most two batches of doubles. Storing the last ones, or reading them,
+    /// touches a full batch.
+    static constexpr unsigned most_added = 2 * most_lanes;
+    static constexpr unsigned capacity = drain_at + most_added;
 
     alignas(64) double data[fields][capacity];
     unsigned size;
@@ -72,12 +73,18 @@ struct Looks {
 
 /// Pairs that are screened before any of them goes on. Their blocks, 12 KiB, are then still in the first-level cache.
 inline constexpr std::size_t group_pairs = 64;
-static_assert(group_pairs + LaneQueue<1>::most_added + 8 <= LaneQueue<1>::capacity && tile_pairs % group_pairs == 0);
+/// A batch may wait in [screened] when the next group is listed, eight at a time.
+static_assert(group_pairs + most_lanes + 8 <= ScreenedQueue::capacity && tile_pairs % group_pairs == 0);
 
 /// Blocks of indexed pairs whose vertices are asked for before they are read.
 inline constexpr std::size_t indexed_ahead = 2;
 /// Pairs whose boxes are asked for before they are read.
 inline constexpr std::size_t boxes_ahead = 32;
+
+// Bits of a tile's pairs, in words of 64.
+FASTCCD_INLINE bool is_set(const std::uint64_t* words, std::size_t i) { return (words[i / 64] >> i % 64 & 1) != 0; }
+FASTCCD_INLINE void set_bit(std::uint64_t* words, std::size_t i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
+FASTCCD_INLINE void clear_bit(std::uint64_t* words, std::size_t i) { words[i / 64] &= ~(std::uint64_t{1} << i % 64); }
 
 /// Results of one tile and scratch for it; one per thread, reused.
 struct TileScratch {

@@ -93,7 +93,7 @@ Summary for_each_tile(const Job& job, Workers<Worker>& workers, Cutoff cutoff, C
     Summary summary;
     summary.pairs = size;
     summary.isa = job.kernels != nullptr ? job.kernels->isa : Isa::scalar;
-    workers.combine_each([&](const Worker& worker) { add(summary, worker.totals); });
+    workers.combine_each([&](const Worker& worker) { summary.add(worker.totals); });
     return summary;
 }
 

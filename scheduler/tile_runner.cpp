@@ -36,10 +36,11 @@ double search_pair(const Job& job, std::size_t first, std::size_t i, double cuto
     const scalar::SearchResult found = answer_pair(job, coordinates, cutoff);
     scratch.time[i] = found.toi;
     scratch.roots[i] = found.roots;
-    const std::uint64_t bit = std::uint64_t{1} << i % 64;
-    std::uint64_t& word = scratch.reported[i / 64];
-    word = found.toi == std::numeric_limits<double>::infinity() ? word & ~bit : word | bit;
-    if (std::isfinite(found.toi) && found.proof == scalar::Proof::none) scratch.is_unproven[i / 64] |= bit;
+    if (found.toi == std::numeric_limits<double>::infinity())
+        clear_bit(scratch.reported, i);
+    else
+        set_bit(scratch.reported, i);
+    if (std::isfinite(found.toi) && found.proof == scalar::Proof::none) set_bit(scratch.is_unproven, i);
     return found.toi;
 }
 
@@ -151,18 +152,6 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
         });
     if (reported != 0 && earliest <= totals.earliest.toi)
         for_each_bit(scratch.reported, count, [&](std::size_t i) { keep_earlier(totals.earliest, contact_of(job, scratch, first, i)); });
-}
-
-void add(Summary& whole, const Summary& part)
-{
-    whole.contacts += part.contacts;
-    whole.proven += part.proven;
-    whole.at_start += part.at_start;
-    whole.odd += part.odd;
-    whole.even += part.even;
-    whole.invalid += part.invalid;
-    whole.scalar_pairs += part.scalar_pairs;
-    keep_earlier(whole.earliest, part.earliest);
 }
 
 }  // namespace fastccd

@@ -48,17 +48,11 @@ inline std::size_t count_bits(const std::uint64_t (&words)[tile_pairs / 64], std
     return bits;
 }
 
-/// Bit i of a tile's words.
-inline bool is_set(const std::uint64_t (&words)[tile_pairs / 64], std::size_t i) { return (words[i / 64] >> i % 64 & 1) != 0; }
-
 /// Pair `i` of a tile that starts at `first`, which the tile reports in contact.
 inline Contact contact_of(const Job& job, const TileScratch& scratch, std::size_t first, std::size_t i)
 {
     const double toi = scratch.time[i];
     return {first + i, toi, !is_set(scratch.is_unproven, i), job.parameters.separation.distance > 0.0 && toi == 0.0};
 }
-
-/// Adds the totals of a part to those of the whole.
-void add(Summary& whole, const Summary& part);
 
 }  // namespace fastccd

@@ -36,18 +36,17 @@ public:
         for (std::size_t lane = 0; lane < size_; ++lane) {
             const auto has = [&](unsigned bits) { return (bits >> lane & 1) != 0; };
             const std::size_t i = numbers_[lane];
-            const std::uint64_t bit = std::uint64_t{1} << i % 64;
             if (has(answers_.reported)) {
                 scratch_.time[i] = answers_.time[lane];
                 scratch_.earliest = std::min(scratch_.earliest, scratch_.time[i]);
-                scratch_.reported[i / 64] |= bit;
-                if (!has(answers_.proven)) scratch_.is_unproven[i / 64] |= bit;
+                set_bit(scratch_.reported, i);
+                if (!has(answers_.proven)) set_bit(scratch_.is_unproven, i);
             } else if (has(answers_.apart)) {
                 continue;
             } else if (others_ != nullptr) {
                 others_->take(i);
             } else {
-                scratch_.is_undecided[i / 64] |= bit;
+                set_bit(scratch_.is_undecided, i);
             }
         }
         size_ = 0;

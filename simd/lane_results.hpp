@@ -25,8 +25,6 @@ FASTCCD_INLINE void for_each_pair(L pair, unsigned lanes, Visit visit)
     }
 }
 
-FASTCCD_INLINE void set_bit(std::uint64_t* words, unsigned i) { words[i / 64] |= std::uint64_t{1} << i % 64; }
-
 /// Leaves the pairs of these lanes to the certified search.
 template <class L>
 FASTCCD_INLINE void leave_undecided(TileScratch& scratch, L pair, unsigned lanes)
@@ -41,7 +39,7 @@ FASTCCD_INLINE void note_touches(TileScratch& scratch, L pair, L left, unsigned 
     alignas(64) double lefts[Lane<L>::width];
     Lane<L>::store(lefts, left);
     for_each_pair(pair, lanes, [&](unsigned i, int lane) FASTCCD_INLINE_LAMBDA {
-        const bool is_first = (scratch.may_touch[i / 64] >> i % 64 & 1) == 0 || lefts[lane] < scratch.touch_time[i];
+        const bool is_first = !is_set(scratch.may_touch, i) || lefts[lane] < scratch.touch_time[i];
         if (is_first) scratch.touch_time[i] = lefts[lane];
         set_bit(scratch.may_touch, i);
     });

@@ -140,7 +140,7 @@ private:
         if constexpr (Lane<S>::is_single)
             if (beyond != 0) screen_again(blocks, kept, beyond);
         for (; beyond != 0; beyond &= beyond - 1)
-            set_bit(scratch_.is_undecided, static_cast<unsigned>(source_.number(first + static_cast<unsigned>(__builtin_ctzll(beyond)))));
+            set_bit(scratch_.is_undecided, source_.number(first + static_cast<unsigned>(__builtin_ctzll(beyond))));
         scratch_.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
 
         // Eight at a time, the last of them perhaps in vain: processors foresee the number of eights better than that of pairs.
@@ -196,7 +196,8 @@ private:
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
             if (cutoff_ < 1.0 && lanes == 0) continue;
-            take_parts(root_stages_, source_, parts, first + i, mark, lanes, parameters_.t_max);
+            queue_parts(scratch_.candidates, source_, parts, first + i, mark, lanes, parameters_.t_max);
+            root_stages_.find_roots_if_many();
         }
         // Less than what leads here, so that shares around one half do not go to and fro.
         scratch_.dense = 3 * kept >= count;
@@ -243,7 +244,8 @@ private:
         if (cutoff_ < 1.0 && lanes == 0) return;
         // Otherwise even if no lane goes on, as in a third of the batches of four random pairs: no processor foresees which.
         record.pair = record.pair + mark;
-        root_stages_.take(record, lanes);
+        push(scratch_.candidates, lanes, record);
+        root_stages_.find_roots_if_many();
     }
 
     /// Takes full batches from the end of [screened], so that what stays need not move; and the rest too if `all`.

@@ -21,18 +21,10 @@ public:
         scratch_.candidates.size = scratch_.slow.size = 0;
     }
 
-    /// Another batch of candidates.
-    FASTCCD_INLINE void take(const PairRecord<L>& record, unsigned lanes)
+    /// After candidates were queued, of one batch of screening at most.
+    FASTCCD_INLINE void find_roots_if_many()
     {
-        push(scratch_.candidates, lanes, record);
-        find_roots_if_many();
-    }
-    /// The same of `count` candidates: fields(append) calls append for each field.
-    template <class Fields>
-    FASTCCD_INLINE void take_fields(unsigned count, Fields fields)
-    {
-        fields(Appender<PairQueue, L>{scratch_.candidates, count});
-        find_roots_if_many();
+        if (scratch_.candidates.size >= PairQueue::drain_at) find_roots(false);
     }
 
     /// Empties all queues.
@@ -48,11 +40,6 @@ private:
     const SearchParameters& parameters_;
     TileScratch& scratch_;
     const bool may_note_touches_ = parameters_.leaf_width >= narrowest_touched && !parameters_.count_roots;
-
-    FASTCCD_INLINE void find_roots_if_many()
-    {
-        if (scratch_.candidates.size >= PairQueue::drain_at) find_roots(false);
-    }
 
     /// The pieces in which the cubic changes sign, and a few steps towards the root in the first of them. Every step is done for all
     /// batches before the next one, so that divisions and roots of many batches are under way at once: processors look ahead by a few

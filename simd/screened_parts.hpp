@@ -1,5 +1,5 @@
-// Batches of pairs as screening reads them, and what it leaves of them as the stages after it take it: in double, and where lanes of
-// screening are of single precision, two batches of those at a time.
+// Batches of pairs as screening reads them, and what it leaves of them as the stages after it read it from [candidates]: in double, and where
+// lanes of screening are of single precision, two batches of those at a time.
 #pragma once
 
 #include <block_source.hpp>
@@ -34,41 +34,40 @@ FASTCCD_INLINE Parts<S, L> next_parts(BlockSource<kind, L>& source, const double
     return parts;
 }
 
-/// Part k of what was screened. Its motion is computed again: kept, it would be through memory as well.
-template <unsigned k, class Stage, PairKind kind, class S, class L>
-FASTCCD_INLINE void take_part(Stage& stage, const BlockSource<kind, L>& source, const Parts<S, L>& parts, std::size_t first, S mark, unsigned lanes,
-                              double t_max)
+/// Appends lanes of part k of what was screened. Its motion is computed again: kept, it would be through memory as well.
+template <unsigned k, PairKind kind, class S, class L>
+FASTCCD_INLINE void queue_part(PairQueue& candidates, const BlockSource<kind, L>& source, const Parts<S, L>& parts, std::size_t first, S mark,
+                               unsigned lanes, double t_max)
 {
     PairRecord<L> record;
     record.r = relative_motion<L>(parts.at[k], block_pairs, t_max);
     record.pair = source.numbers(first + k * Lane<L>::width) + Lane<L>::template widened<k>(mark);
-    stage.take(record, lanes >> k * Lane<L>::width & lanes_in_use<L>(Lane<L>::width));
+    push(candidates, lanes >> k * Lane<L>::width & lanes_in_use<L>(Lane<L>::width), record);
 }
 
-/// The `lanes` of parts that begin with pair `first` go on in double, to a stage with take() and take_fields() as RootStages has them, with
-/// `mark` added to their numbers: both parts at once if that makes a batch at most, since a store for each field and batch
-/// is most of what queueing takes (bench/LIMITS.md).
-template <class Stage, PairKind kind, class S, class L>
-FASTCCD_INLINE void take_parts(Stage& stage, const BlockSource<kind, L>& source, const Parts<S, L>& parts, std::size_t first, S mark,
-                               unsigned lanes, double t_max)
+/// Appends the `lanes` of parts that begin with pair `first`, in double, with `mark` added to their numbers: both parts at once if that
+/// makes a batch at most, since a store for each field and batch is most of what queueing takes (bench/LIMITS.md).
+template <PairKind kind, class S, class L>
+FASTCCD_INLINE void queue_parts(PairQueue& candidates, const BlockSource<kind, L>& source, const Parts<S, L>& parts, std::size_t first, S mark,
+                                unsigned lanes, double t_max)
 {
     if constexpr (Parts<S, L>::count == 2) {
         if constexpr (Lane<L>::can_join) {
             const auto count = static_cast<unsigned>(__builtin_popcount(lanes));
             if (count <= Lane<L>::width) [[likely]] {
                 const typename Lane<L>::template Joiner<> joiner{lanes};
-                return stage.take_fields(count, [&](auto append) FASTCCD_INLINE_LAMBDA {
-                    const auto append_joined = [&](L low, L high) FASTCCD_INLINE_LAMBDA { return append(joiner(low, high)); };
-                    combined_motion<L>(parts.at, block_pairs, t_max, append_joined);
-                    append_joined(source.numbers(first) + Lane<L>::template widened<0>(mark),
-                                  source.numbers(first + Lane<L>::width) + Lane<L>::template widened<1>(mark));
-                });
+                Appender<PairQueue, L> append{candidates, count};
+                const auto append_joined = [&](L low, L high) FASTCCD_INLINE_LAMBDA { return append(joiner(low, high)); };
+                combined_motion<L>(parts.at, block_pairs, t_max, append_joined);
+                append_joined(source.numbers(first) + Lane<L>::template widened<0>(mark),
+                              source.numbers(first + Lane<L>::width) + Lane<L>::template widened<1>(mark));
+                return;
             }
         }
-        take_part<0>(stage, source, parts, first, mark, lanes, t_max);
-        take_part<1>(stage, source, parts, first, mark, lanes, t_max);
+        queue_part<0>(candidates, source, parts, first, mark, lanes, t_max);
+        queue_part<1>(candidates, source, parts, first, mark, lanes, t_max);
     } else {
-        take_part<0>(stage, source, parts, first, mark, lanes, t_max);
+        queue_part<0>(candidates, source, parts, first, mark, lanes, t_max);
     }
 }
 

@@ -49,19 +49,6 @@ public:
         while (scratch.advancing.size > 0) pipeline.advance();
     }
 
-    /// What screening leaves.
-    FASTCCD_INLINE void take(const PairRecord<L>& record, unsigned lanes)
-    {
-        push(scratch_.candidates, lanes, record);
-        look_first_if_many();
-    }
-    template <class Fields>
-    FASTCCD_INLINE void take_fields(unsigned count, Fields fields)
-    {
-        fields(Appender<PairQueue, L>{scratch_.candidates, count});
-        look_first_if_many();
-    }
-
 private:
     using Screening = typename Lane<L>::Screening;
     static constexpr unsigned width = Lane<L>::width;
@@ -97,7 +84,9 @@ private:
                 return farther_on_halves<kind>(f, p, q, t, s, extents, scale, screening_bounds_);
             });
         lanes &= ~Lane<S>::bits(farther.first & farther.second);
-        if (lanes != 0) take_parts(*this, source_, parts, first, broadcast<S>(0.0), lanes, parameters_.t_max);
+        if (lanes == 0) return;
+        queue_parts(scratch_.candidates, source_, parts, first, broadcast<S>(0.0), lanes, parameters_.t_max);
+        look_first_if_many();
     }
 
     template <class S>
@@ -120,8 +109,9 @@ private:
             record.pair = source_.numbers(first + k * width);
             const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, extents(record.r)));
             leave_undecided(scratch_, record.pair, lanes & ~decidable);
-            take(record, decidable);
+            push(scratch_.candidates, decidable, record);
         }
+        look_first_if_many();
     }
 
     FASTCCD_INLINE void look_first_if_many()

@@ -330,6 +330,50 @@ void expect_totals_of_the_answers(const std::vector<oracle::Pair>& pairs, const 
     }
 }
 
+/// All but scalar_pairs, which is no part of the answer.
+auto totals_of(const Summary& s)
+{
+    return std::tuple{s.pairs, s.contacts, s.proven, s.at_start, s.odd, s.even, s.invalid, s.earliest.pair, s.earliest.toi, s.earliest.proven,
+                      s.earliest.at_start, s.isa};
+}
+
+TEST(Api, TotalsOfPiecesAddUpInAnyOrder)
+{
+    auto pairs = uniform_pairs(5000);
+    pairs[4321][5][0] = not_a_number;
+    const std::size_t earliest = answer(oracle::Kind::vertex_face, interleaved(pairs), {}).summary.earliest.pair;
+    pairs[earliest + 3] = pairs[earliest];  // of two at the same time, in the same piece or not, the smaller number
+    for (const double separation : {0.0, 0.01}) {
+        Options options;
+        options.minimum_separation = separation;
+        const auto summary_of = [&](std::size_t begin, std::size_t end) {
+            std::vector<double> toi(end - begin);
+            std::vector<std::uint8_t> roots(end - begin);
+            Summary summary;
+            const std::vector<oracle::Pair> piece(pairs.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                  pairs.begin() + static_cast<std::ptrdiff_t>(end));
+            const PairKind kind = PairKind::vertex_face;
+            const bool count_roots = separation == 0.0;
+            EXPECT_TRUE(time_of_impact(kind, interleaved(piece), options, toi, &summary, count_roots ? std::span{roots} : std::span{roots}.first(0)).ok());
+            return summary;
+        };
+        const Summary whole = summary_of(0, pairs.size());
+        EXPECT_LT(0u, whole.invalid);
+        EXPECT_LT(0u, separation == 0.0 ? whole.odd : whole.at_start);
+        // In order, and from the last one on.
+        const std::size_t cuts[] = {0, earliest, earliest + 1, earliest + 3, 4000, pairs.size()};
+        const std::size_t pieces = std::size(cuts) - 1;
+        Summary forwards, backwards;
+        for (std::size_t k = 0; k < pieces; ++k) forwards.add(summary_of(cuts[k], cuts[k + 1]), cuts[k]);
+        for (std::size_t k = pieces; k-- > 0;) backwards.add(summary_of(cuts[k], cuts[k + 1]), cuts[k]);
+        EXPECT_EQ(totals_of(forwards), totals_of(whole));
+        EXPECT_EQ(totals_of(backwards), totals_of(whole));
+    }
+    Summary none;
+    none.add(Summary{}, 7);
+    EXPECT_EQ(totals_of(none), totals_of(Summary{}));
+}
+
 TEST(Api, SummaryAgreesWithTheDenseAnswer)
 {
     auto pairs = uniform_pairs(20000);

@@ -294,7 +294,7 @@ void expect_proofs(const std::vector<oracle::Pair>& pairs, const std::string& fa
     portable::run_tile<double>({kind, &source, 0, pairs.size(), &parameters, 1.0}, scratch);
     std::mt19937_64 bits{63};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if ((scratch.is_undecided[i / 64] >> i % 64 & 1) != 0) continue;
+        if (is_set(scratch.is_undecided, i)) continue;
         const double found = scratch.time[i];
         const double until = std::min(found, 1.0);
         const double open = Leaves<kind>{pairs[i], parameters}.first_without_certificate(until, bits);

@@ -31,7 +31,7 @@ std::size_t expect_decided_as_searched(oracle::Kind kind, const std::vector<orac
             FASTCCD_KERNEL_NAMESPACE::run_tile<FASTCCD_KERNEL_NAMESPACE::Array<double, 8>>(
                 {pair_kind(kind), &source, 0, pairs.size(), &parameters, 1.0, preferences}, *scratch);
             for (std::size_t i = 0; i < pairs.size(); ++i) {
-                if ((scratch->is_undecided[i / 64] >> i % 64 & 1) != 0) continue;
+                if (is_set(scratch->is_undecided, i)) continue;
                 ++decided;
                 EXPECT_EQ(scratch->time[i], expected.toi[i]) << family << ' ' << lossless(pairs[i]);
                 if (expected.toi[i] <= 1.0) {
@@ -94,7 +94,7 @@ TEST(WideLanes, KeepADistanceAsTheScalarSearchDoes)
             FASTCCD_KERNEL_NAMESPACE::run_separation_tile<FASTCCD_KERNEL_NAMESPACE::Array<double, 8>>(
                 {pair_kind(kind), &source, 0, pairs.size(), &parameters, 1.0}, *scratch);
             for (std::size_t i = 0; i < pairs.size(); ++i) {
-                if ((scratch->is_undecided[i / 64] >> i % 64 & 1) != 0) continue;
+                if (is_set(scratch->is_undecided, i)) continue;
                 ++decided;
                 ASSERT_EQ(scratch->time[i], expected.toi[i]) << family << ' ' << lossless(pairs[i]);
             }

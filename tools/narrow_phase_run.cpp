@@ -74,7 +74,7 @@ void NarrowPhaseRun::answer_piece(const PairView& pairs, std::size_t first_pair,
     } else {
         find(pairs, part);
     }
-    add(part, first_pair);
+    totals_.summary.add(part, first_pair);
     for (const std::size_t i : invalid_) {
         if (totals_.first_invalid.size() == most_invalid_named) break;
         totals_.first_invalid.push_back(first_pair + i);
@@ -105,23 +105,6 @@ void NarrowPhaseRun::find_with_roots(const PairView& pairs, Summary& summary)
     for (std::size_t i = 0; i < toi_.size(); ++i) {
         if (std::isfinite(toi_[i])) contacts_.push_back({.pair = i, .toi = toi_[i]});
         if (std::isnan(toi_[i])) invalid_.push_back(i);
-    }
-}
-
-void NarrowPhaseRun::add(const Summary& part, std::size_t first_pair)
-{
-    Summary& sum = totals_.summary;
-    sum.pairs += part.pairs;
-    sum.contacts += part.contacts;
-    sum.proven += part.proven;
-    sum.at_start += part.at_start;
-    sum.odd += part.odd;
-    sum.even += part.even;
-    sum.invalid += part.invalid;
-    sum.scalar_pairs += part.scalar_pairs;
-    // Pieces come in pair order, so that of two equal times the first stays.
-    if (part.earliest.toi < sum.earliest.toi) {
-        sum.earliest = {.pair = first_pair + part.earliest.pair, .toi = part.earliest.toi};
     }
 }
 

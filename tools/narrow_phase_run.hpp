@@ -98,7 +98,6 @@ private:
     void answer_piece(const PairView& pairs, std::size_t first_pair, std::span<const std::int8_t> truth);
     void find(const PairView& pairs, Summary& summary);
     void find_with_roots(const PairView& pairs, Summary& summary);
-    void add(const Summary& part, std::size_t first_pair);
     void compare(std::span<const std::int8_t> truth);
 
     const PairOptions& options_;

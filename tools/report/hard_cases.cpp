@@ -73,13 +73,13 @@ Json answer(const HardSet& set, bool exact, std::size_t repeats)
     options.tolerance = tolerance;
     options.exact = exact;
     std::vector<double> toi(set.pairs.size());
-    std::size_t proven = 0, scalar_pairs = 0;
+    Summary totals;
     Timing timing{Timing::Clock::processor};
     // In one call; but the exact verdict takes long, and Ctrl-C should not wait for all of it.
     const std::size_t size = toi.size(), piece = exact ? std::min<std::size_t>(size, 256) : size;
     for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
         double seconds = 0;
-        proven = scalar_pairs = 0;
+        totals = {};
         for (std::size_t first = 0; first < size; first += piece) {
             check_interrupt();
             const std::size_t end = std::min(first + piece, size);
@@ -88,14 +88,13 @@ Json answer(const HardSet& set, bool exact, std::size_t repeats)
                 throw_unless_ok(time_of_impact(set.kind, slice(set.view(), first, end), options,
                                                std::span{toi}.subspan(first, end - first), &summary));
             });
-            proven += summary.proven;
-            scalar_pairs += summary.scalar_pairs;
+            totals.add(summary, first);
         }
         timing.add(seconds);
     }
     Json json = compare(set.truth, toi);
-    json["proven"] = proven;
-    json["certified_search"] = scalar_pairs;
+    json["proven"] = totals.proven;
+    json["certified_search"] = totals.scalar_pairs;
     json["timing"] = timing.json(set.pairs.size());
     return json;
 }

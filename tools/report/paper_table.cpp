@@ -64,10 +64,7 @@ std::array<Row, tolerances.size()> answer_all(const Plan& plan, PairKind kind, R
                 rows[t].seconds[repeat][0] += processor_seconds(answer);
                 rows[t].seconds[repeat][1] += seconds_on(all_threads, answer);
                 if (repeat > 0) continue;
-                rows[t].summary.contacts += summary.contacts;
-                rows[t].summary.odd += summary.odd;
-                rows[t].summary.even += summary.even;
-                rows[t].summary.scalar_pairs += summary.scalar_pairs;
+                rows[t].summary.add(summary, first);
             }
             progress.move((kind == PairKind::edge_edge ? plan.pairs : 0) + first + size * (repeat + 1) / repeats,
                           2 * plan.pairs);

@@ -66,7 +66,7 @@ struct Contact {
     bool at_start = false;
 };
 
-/// Totals of one call.
+/// Totals of one call, or of several: see add().
 struct Summary {
     std::size_t pairs = 0;         ///< Pairs asked about.
     std::size_t contacts = 0;      ///< Pairs reported in contact.
@@ -80,6 +80,24 @@ struct Summary {
     Contact earliest{std::numeric_limits<std::size_t>::max(),
                      std::numeric_limits<double>::infinity()};  ///< Smallest toi, ties to the smaller index.
     Isa isa = Isa::automatic;      ///< Kernels that ran.
+
+    /// Adds the totals of another call, whose pairs are counted from `first` on in the whole: for pairs that come in pieces.
+    constexpr void add(const Summary& part, std::size_t first = 0) noexcept
+    {
+        pairs += part.pairs;
+        contacts += part.contacts;
+        proven += part.proven;
+        at_start += part.at_start;
+        odd += part.odd;
+        even += part.even;
+        invalid += part.invalid;
+        scalar_pairs += part.scalar_pairs;
+        if (isa == Isa::automatic) isa = part.isa;
+        if (part.earliest.toi == std::numeric_limits<double>::infinity()) return;
+        Contact other = part.earliest;
+        other.pair += first;
+        if (other.toi < earliest.toi || (other.toi == earliest.toi && other.pair < earliest.pair)) earliest = other;
+    }
 };
 
 /// What can go wrong. `pair` is Status::pair.
