@@ -82,4 +82,20 @@ FASTCCD_INLINE L largest(const Quadratic<L>& q)
     return max(q.c0, q.c1, q.c2);
 }
 
+template <class L>
+FASTCCD_INLINE L largest_magnitude(const Cubic<L>& f)
+{
+    return max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
+}
+template <class L>
+FASTCCD_INLINE L largest_magnitude(const Quadratic<L>& q)
+{
+    return max(abs(q.c0), abs(q.c1), abs(q.c2));
+}
+template <class L>
+FASTCCD_INLINE L largest_magnitude(const Linear<L>& f)
+{
+    return max(abs(f.c0), abs(f.c1));
+}
+
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -111,7 +111,7 @@ struct ErrorBounds {
     /// err by 2 rho + 2 and are at most 2 X in size, are interpolated instead, the same: a lerp adds 6.
     [[nodiscard]] FASTCCD_INLINE constexpr double linear_on_interval() const { return (2 * rho + 8 + slack) * u; }
 
-    // ---- Margins with which lanes decide (DESIGN: same verdict as the certified search) -----------
+    // ---- Margins with which lanes decide (CONTRIBUTING, What decides a result) -----------
 
     // A hull certificate found by lanes on [a, b] with these bounds implies that the certified search
     // finds it on every [a', b'] inside [a, b]: exact coefficients on a part are convex combinations

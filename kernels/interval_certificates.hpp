@@ -59,6 +59,24 @@ FASTCCD_INLINE Polynomial on_part(const Polynomial& f, const Throughout<L>&)
     return f;
 }
 
+// Polynomials of a pair whose coefficients are in lanes already.
+
+template <class L>
+FASTCCD_INLINE Cubic<L> cubic_of(const PolynomialsOf<L>& pair)
+{
+    return {pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]};
+}
+template <class EdgeFunction>
+FASTCCD_INLINE auto quadratic_of(const EdgeFunction& e)
+{
+    return Quadratic<decltype(EdgeFunction::start)>{e.start, e.middle, e.end};
+}
+template <class Gap>
+FASTCCD_INLINE auto linear_of(const Gap& gap)
+{
+    return Linear<decltype(Gap::start)>{gap.start, gap.end};
+}
+
 /// Bernstein coefficients of the coplanarity cubic on a part, each within cubic_bound.
 template <class T, template <class> class Part, class L>
 FASTCCD_INLINE Cubic<L> coplanarity_on(const PolynomialsOf<T>& pair, const Part<L>& part)
@@ -77,6 +95,20 @@ template <class L>
 struct StrictSign {
     LaneMask<L> positive, negative;
 };
+
+/// Of the three edge functions of a face: signs that they cannot all share, so the vertex is not inside of the face in this projection.
+template <class L>
+FASTCCD_INLINE LaneMask<L> not_inside(const StrictSign<L>& p, const StrictSign<L>& q, const StrictSign<L>& t)
+{
+    return (p.positive | q.positive | t.positive) & (p.negative | q.negative | t.negative);
+}
+
+/// Of both ends of an edge, seen from the other edge: in this projection they are on one side of its line.
+template <class L>
+FASTCCD_INLINE LaneMask<L> on_one_side(const StrictSign<L>& p, const StrictSign<L>& t)
+{
+    return (p.positive & t.positive) | (p.negative & t.negative);
+}
 
 template <class EdgeFunction, template <class> class Part, class L>
 FASTCCD_INLINE StrictSign<L> strict_sign(const EdgeFunction& e, const Part<L>& part)
@@ -100,12 +132,10 @@ template <PairKind kind, class EdgeFunction, template <class> class Part, class 
 FASTCCD_INLINE LaneMask<L> apart_along(const EdgeFunction* edges, const Part<L>& part)
 {
     const StrictSign<L> p = strict_sign(edges[0], part), q = strict_sign(edges[1], part), t = strict_sign(edges[2], part);
-    if constexpr (kind == PairKind::vertex_face) {
-        return (p.positive | q.positive | t.positive) & (p.negative | q.negative | t.negative);
-    } else {
-        const StrictSign<L> s = strict_sign(edges[3], part);
-        return (p.positive & t.positive) | (p.negative & t.negative) | (q.positive & s.positive) | (q.negative & s.negative);
-    }
+    if constexpr (kind == PairKind::vertex_face)
+        return not_inside(p, q, t);
+    else
+        return on_one_side(p, t) | on_one_side(q, strict_sign(edges[3], part));
 }
 
 /// The linear certificate: a gap is nowhere less than at an end.

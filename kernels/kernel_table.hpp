@@ -97,12 +97,11 @@ struct TileScratch {
                                                ///< but contacts and undecided pairs is looked at one by one.
     std::uint64_t is_undecided[tile_pairs / 64];
     /// Bit i: pair i may be in contact in the leaf that starts at touch_time[i] or in the next one, neither proven nor disproved by the
-    /// lanes; before, it is apart, but for what else they say of it: a proven contact, or that it is undecided. In any leaf, if the time
-    /// is 0.
+    /// lanes. In leaves before it is apart, unless a contact proven there is recorded or is_undecided is set. touch_time[i] = 0: in any leaf.
     std::uint64_t may_touch[tile_pairs / 64];
     double touch_time[tile_pairs];
     double earliest;                           ///< From the lanes: none of their times is before this.
-    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven; without a minimum separation run_tile reports no such.
+    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. Without a minimum separation lanes set none.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.

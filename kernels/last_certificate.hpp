@@ -85,8 +85,9 @@ FASTCCD_INLINE L above_until(const Cubic<L>& f, L e)
     return select<L>(comes_down, select<L>(less(there, zero), secant, newton), until);
 }
 
+/// The time from a to b that lies at this share of the way, 0 at a.
 template <class L>
-FASTCCD_INLINE L on_whole(L share, L a, L b)
+FASTCCD_INLINE L time_at_share(L share, L a, L b)
 {
     return min(max(a + (b - a) * share, a), b);
 }
@@ -108,7 +109,7 @@ FASTCCD_INLINE L last_gap(const PolynomialsOf<L>& pair, L a, L b, CertificateLev
         Linear<L> rest[4];
         LaneMask<L> above = asked, below = asked;
         for (int k = 0; k < gap_count(kind); ++k) {
-            rest[k] = on_interval(Linear<L>{gaps[k].start, gaps[k].end}, a, b);
+            rest[k] = on_interval(linear_of(gaps[k]), a, b);
             const StrictSign<L> sign = sign_at_start(rest[k], gaps[k].bound);
             above = above & sign.positive;
             below = below & sign.negative;
@@ -117,8 +118,8 @@ FASTCCD_INLINE L last_gap(const PolynomialsOf<L>& pair, L a, L b, CertificateLev
         if (Lane<L>::bits(open) == 0) continue;
         L until = broadcast<L>(1.0);
         for (int k = 0; k < gap_count(kind); ++k)
-            until = min(until, above_until(rest[k], level(gaps[k].bound, value_margin(Linear<L>{gaps[k].start, gaps[k].end}))));
-        last = max(last, select<L>(open, on_whole(until, a, b), a));
+            until = min(until, above_until(rest[k], level(gaps[k].bound, value_margin(linear_of(gaps[k])))));
+        last = max(last, select<L>(open, time_at_share(until, a, b), a));
     }
     return last;
 }
@@ -138,23 +139,21 @@ FASTCCD_INLINE L last_in_projections(const PolynomialsOf<L>& pair, L a, L b, Cer
         Quadratic<L> rest[4];
         StrictSign<L> sign[4];
         for (int k = 0; k < edge_function_count(kind); ++k) {
-            rest[k] = on_interval(Quadratic<L>{edges[k].start, edges[k].middle, edges[k].end}, a, b);
+            rest[k] = on_interval(quadratic_of(edges[k]), a, b);
             sign[k] = sign_at_start(rest[k], edges[k].bound);
         }
         const auto until = [&](int k) FASTCCD_INLINE_LAMBDA -> SignEnd<L> {
             const auto& e = edges[k];
-            const L end = on_whole(above_until(rest[k], level(e.bound, value_margin(Quadratic<L>{e.start, e.middle, e.end}))), a, b);
+            const L end = time_at_share(above_until(rest[k], level(e.bound, value_margin(quadratic_of(e)))), a, b);
             return {select<L>(sign[k].positive, end, a), select<L>(sign[k].negative, end, a)};
         };
         if constexpr (kind == PairKind::vertex_face) {
-            const LaneMask<L> holds = (sign[0].positive | sign[1].positive | sign[2].positive) & (sign[0].negative | sign[1].negative | sign[2].negative);
-            if (Lane<L>::bits(asked & holds) == 0) continue;
+            if (Lane<L>::bits(asked & not_inside(sign[0], sign[1], sign[2])) == 0) continue;
             const SignEnd<L> p = until(0), q = until(1), t = until(2);
             last = max(last, min(max(p.positive, q.positive, t.positive), max(p.negative, q.negative, t.negative)));
         } else {
             const auto along = [&](int k, int l) FASTCCD_INLINE_LAMBDA {
-                const LaneMask<L> holds = (sign[k].positive & sign[l].positive) | (sign[k].negative & sign[l].negative);
-                if (Lane<L>::bits(asked & holds) == 0) return;
+                if (Lane<L>::bits(asked & on_one_side(sign[k], sign[l])) == 0) return;
                 const SignEnd<L> p = until(k), t = until(l);
                 last = max(last, max(min(p.positive, t.positive), min(p.negative, t.negative)));
             };
@@ -170,12 +169,12 @@ FASTCCD_INLINE L last_in_projections(const PolynomialsOf<L>& pair, L a, L b, Cer
 template <PairKind kind, class L>
 __attribute__((noinline)) L last_certificate(const PolynomialsOf<L>& pair, L a, L b, CertificateLevel level, LaneMask<L> asked)
 {
-    const Cubic<L> cubic{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]}, rest = on_interval(cubic, a, b);
+    const Cubic<L> cubic = cubic_of(pair), rest = on_interval(cubic, a, b);
     const StrictSign<L> sign = sign_at_start(rest, pair.cubic_bound);
     const LaneMask<L> volume = sign.positive | sign.negative;
     L last = a;
     if (Lane<L>::bits(asked & volume) != 0)
-        last = select<L>(volume, on_whole(above_until(rest, level(pair.cubic_bound, value_margin(cubic))), a, b), a);
+        last = select<L>(volume, time_at_share(above_until(rest, level(pair.cubic_bound, value_margin(cubic))), a, b), a);
     last = max(last, last_gap<kind>(pair, a, b, level, asked & less(last, b)));
     return max(last, last_in_projections<kind>(pair, a, b, level, asked & less(last, b)));
 }

@@ -22,24 +22,24 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 template <class L>
 FASTCCD_INLINE L value_margin(const Cubic<L>& f)
 {
-    return broadcast<L>((2 * 7.5 + 1.2) * ErrorBounds::u) * max(max(abs(f.c0), abs(f.c1)), max(abs(f.c2), abs(f.c3)));
+    return broadcast<L>((2 * 7.5 + 1.2) * ErrorBounds::u) * largest_magnitude(f);
 }
 template <class L>
 FASTCCD_INLINE L value_margin(const Quadratic<L>& q)
 {
-    return broadcast<L>((2 * 5.0 + 1.2) * ErrorBounds::u) * max(abs(q.c0), abs(q.c1), abs(q.c2));
+    return broadcast<L>((2 * 5.0 + 1.2) * ErrorBounds::u) * largest_magnitude(q);
 }
 
 template <class L>
 FASTCCD_INLINE L value_margin(const Linear<L>& f)
 {
-    return broadcast<L>((2 * 2.5 + 1.2) * ErrorBounds::u) * max(abs(f.c0), abs(f.c1));
+    return broadcast<L>((2 * 2.5 + 1.2) * ErrorBounds::u) * largest_magnitude(f);
 }
 
 template <class L>
 FASTCCD_INLINE LaneMask<L> may_be_coplanar(const PolynomialsOf<L>& pair, L s)
 {
-    const Cubic<L> f{pair.cubic[0], pair.cubic[1], pair.cubic[2], pair.cubic[3]};
+    const Cubic<L> f = cubic_of(pair);
     return less_equal(abs(on_interval(f, s, s).c0) + value_margin(f), pair.cubic_bound);
 }
 
@@ -49,17 +49,15 @@ FASTCCD_INLINE LaneMask<L> may_touch_along(const PolynomialsOf<L>& pair, int axi
 {
     const auto sign = [&](int edge) FASTCCD_INLINE_LAMBDA -> StrictSign<L> {
         const auto& e = pair.edges[axis][edge];
-        const Quadratic<L> q{e.start, e.middle, e.end};
+        const Quadratic<L> q = quadratic_of(e);
         const L value = on_interval(q, s, s).c0, needed = e.bound - value_margin(q);
         return {less(needed, value), less(value, negated(needed))};
     };
     const StrictSign<L> p = sign(0), q = sign(1), t = sign(2);
-    if constexpr (kind == PairKind::vertex_face) {
-        return !((p.positive | q.positive | t.positive) & (p.negative | q.negative | t.negative));
-    } else {
-        const StrictSign<L> r = sign(3);
-        return !((p.positive & t.positive) | (p.negative & t.negative) | (q.positive & r.positive) | (q.negative & r.negative));
-    }
+    if constexpr (kind == PairKind::vertex_face)
+        return !not_inside(p, q, t);
+    else
+        return !(on_one_side(p, t) | on_one_side(q, sign(3)));
 }
 
 /// As separated_on along one axis: some vertex of the second primitive is not above, and some not below, some of the first.
@@ -69,7 +67,7 @@ FASTCCD_INLINE LaneMask<L> may_overlap_along(const PolynomialsOf<L>& pair, int a
     LaneMask<L> reaches_up = no_lanes<L>(), reaches_down = reaches_up;
     for (int k = 0; k < gap_count(kind); ++k) {
         const auto& g = pair.gaps[axis][k];
-        const Linear<L> gap{g.start, g.end};
+        const Linear<L> gap = linear_of(g);
         const L value = lerp(gap.c0, gap.c1, s), needed = g.bound - value_margin(gap);
         reaches_up = reaches_up | !less(needed, value);
         reaches_down = reaches_down | !less(value, negated(needed));

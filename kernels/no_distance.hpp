@@ -11,7 +11,7 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 /// range that scalar/scaling.hpp leaves alone, 2^-100 to 2^100, so no power of two leaves that of doubles. Whether a pair is apart does
 /// not change, and what is found along directions does not depend on the units of an axis.
 template <class L>
-FASTCCD_INLINE RelativeMotion<L> with_equal_extents(const RelativeMotion<L>& r)
+FASTCCD_INLINE RelativeMotion<L> with_normalized_extents(const RelativeMotion<L>& r)
 {
     const auto factor = [](L extent) FASTCCD_INLINE_LAMBDA {
         return select<L>(less(broadcast<L>(0.0), extent), broadcast<L>(0.5) / power_of_two(extent), broadcast<L>(1.0));
@@ -33,9 +33,9 @@ inline constexpr double share_of_resolution = 0.25;
 template <PairKind kind, class L>
 __attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r, L s, const ErrorBounds& bounds)
 {
-    const RelativeMotion<L> equal = with_equal_extents(r);
-    const Extents<L> e = extents(equal);
-    const Sight<L> sight = look<kind>(equal, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
+    const RelativeMotion<L> normalized = with_normalized_extents(r);
+    const Extents<L> e = extents(normalized);
+    const Sight<L> sight = look<kind>(normalized, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
     const LaneMask<L> proven = certified_at(sight.reach, s);
     if (Lane<L>::bits(proven) == 0) return !proven;
     const L close = broadcast<L>(share_of_resolution * SeparationParameters::resolution) * sum(e);

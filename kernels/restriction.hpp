@@ -21,12 +21,12 @@ FASTCCD_INLINE PolynomialsOf<L> restricted_to(const PolynomialsOf<L>& whole, L a
     for (int axis = 0; axis < 3; ++axis) {
         for (int edge = 0; edge < edge_function_count(kind); ++edge) {
             const auto& e = whole.edges[axis][edge];
-            const Quadratic<L> q = on_interval(Quadratic<L>{e.start, e.middle, e.end}, a, b);
+            const Quadratic<L> q = on_interval(quadratic_of(e), a, b);
             part.edges[axis][edge] = {q.c0, q.c1, q.c2, e.bound};
         }
         for (int k = 0; k < gap_count(kind); ++k) {
             const auto& gap = whole.gaps[axis][k];
-            const Linear<L> g = on_interval(Linear<L>{gap.start, gap.end}, a, b);
+            const Linear<L> g = on_interval(linear_of(gap), a, b);
             part.gaps[axis][k] = {g.c0, g.c1, gap.bound};
         }
     }
@@ -45,15 +45,14 @@ FASTCCD_INLINE L lerp_rounding(int levels, L largest)
 template <PairKind kind, class L>
 FASTCCD_INLINE void add_rounding_on_parts(PolynomialsOf<L>& part)
 {
-    const auto& f = part.cubic;
-    part.cubic_bound = part.cubic_bound + lerp_rounding(3, max(max(abs(f[0]), abs(f[1])), max(abs(f[2]), abs(f[3]))));
+    part.cubic_bound = part.cubic_bound + lerp_rounding(3, largest_magnitude(cubic_of(part)));
     for (auto& edges : part.edges)
         for (int edge = 0; edge < edge_function_count(kind); ++edge) {
             auto& e = edges[edge];
-            e.bound = e.bound + lerp_rounding(2, max(abs(e.start), abs(e.middle), abs(e.end)));
+            e.bound = e.bound + lerp_rounding(2, largest_magnitude(quadratic_of(e)));
         }
     for (auto& gaps : part.gaps)
-        for (int k = 0; k < gap_count(kind); ++k) gaps[k].bound = gaps[k].bound + lerp_rounding(1, max(abs(gaps[k].start), abs(gaps[k].end)));
+        for (int k = 0; k < gap_count(kind); ++k) gaps[k].bound = gaps[k].bound + lerp_rounding(1, largest_magnitude(linear_of(gaps[k])));
 }
 
 /// A time of the step that is not after s of [0, 1] over the part, nor before its origin: time_in_step() is rounded up by u of itself at most, and

@@ -155,7 +155,7 @@ FASTCCD_INLINE LaneMask<L> are_in_line_at(const PairCoefficientsOf<L>& pair, L s
     for (const auto& edges : pair.edges) {
         if (Lane<L>::bits(in_line) == 0) return in_line;
         for (const auto& f : edges)
-            in_line = in_line & less_equal(abs(on_interval(Quadratic<L>{f.start, f.middle, f.end}, s, s).c0), allowed * f.bound);
+            in_line = in_line & less_equal(abs(on_interval(quadratic_of(f), s, s).c0), allowed * f.bound);
     }
     return in_line;
 }

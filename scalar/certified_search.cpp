@@ -8,7 +8,8 @@
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation
-// goes on from there, without any separation, but where a first look in that direction has told that it would not (no_distance.hpp). It tells apart what computed positions tell apart.
+// goes on from there, without any separation, but where a first look in that direction has told that it would not (no_distance.hpp). It
+// tells apart what computed positions tell apart.
 #include <certified_search.hpp>
 
 #include <limits>

@@ -17,7 +17,7 @@ struct ExactContact {
     double lower_bound;
 };
 
-/// `coordinates`: 24 finite ones, in the order of PairView. Tens of microseconds. May throw std::bad_alloc.
+/// `coordinates`: 24 finite ones, in the order of PairView. Takes what Options::exact says. May throw std::bad_alloc.
 ExactContact exact_contact(PairKind kind, const double* coordinates, const SearchParameters& parameters);
 
 }  // namespace fastccd::scalar

@@ -16,7 +16,7 @@ class LeafSearch {
 public:
     static constexpr double none = std::numeric_limits<double>::infinity();
 
-    /// `lanes`: if there are any, several intervals are looked at in one go, with the same outcome.
+    /// `kernel`: if there is one, several intervals are looked at in one go, with the same outcome.
     LeafSearch(const PairPolynomials<kind>& pair, const SearchParameters& parameters, const IntervalKernel* kernel = nullptr)
         : pair_{pair}, parameters_{parameters}, kernel_{kernel}, search_{pair.coefficients(), parameters, kernel}
     {
@@ -104,8 +104,8 @@ public:
     [[nodiscard]] Proof proof_nearby(double s) const { return pair_.contact_proven_near(s) ? Proof::nearby : Proof::none; }
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
-    /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which fewer than
-    /// that many have not come to. Not where it touches: that has been looked at (counts_as_contact_at).
+    /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which none
+    /// below most_intervals_in_leaf has come to. Not where it touches: that has been looked at (counts_as_contact_at).
     [[nodiscard]] bool in_doubt(double s) const
     {
         return touch_ == none && (search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));

@@ -17,7 +17,7 @@ namespace fastccd::scalar {
 template <PairKind kind>
 class OrderedSearch {
 public:
-    /// Over [0, 1] of the coefficients. Without `lanes`, or with a kernel that has none for intervals, they are looked at one at a time.
+    /// Over [0, 1] of the coefficients. Without `kernel`, or with one that has none for intervals, they are looked at one at a time.
     OrderedSearch(const PairCoefficients& pair, const SearchParameters& parameters, const IntervalKernel* kernel)
         : pair_{pair}, parameters_{parameters}
     {

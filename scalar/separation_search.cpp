@@ -104,7 +104,7 @@ double search_on(const PairCoefficients& coefficients, SearchParameters paramete
 {
     parameters.separation = SeparationParameters{};
     SeparationRecord<double> pair{};
-    pair.r = with_equal_extents(motion_of<double>(coefficients));
+    pair.r = with_normalized_extents(motion_of<double>(coefficients));
     pair.extents = extents(pair.r);
     pair.time = pair.at = pair.window_low = pair.window_high = time;
     return walk<kind>(pair, parameters, 1.0).toi;

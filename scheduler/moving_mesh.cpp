@@ -1,8 +1,6 @@
 // Vertex records and the checks of the indices.
 #include <fastccd/indexed.hpp>
 
-#include <limits>
-
 #include <guarded.hpp>
 #include <index_check.hpp>
 #include <mesh_boxes.hpp>
@@ -50,12 +48,12 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
     : vertex_count_{start.size()}, faces_{faces}, edges_{edges}
 {
     if (start.size() != end.size() || (start.size() > 0 && !(start.has_data() && end.has_data()))) return;
+    if (exceeds_memory(vertex_count_, 3 * sizeof(float))) return;
     status_ = check_rows(faces, 3, vertex_count_, Error::bad_face_index);
     if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_, Error::bad_edge_index);
     if (!status_.ok() || vertex_count_ == 0) return;
 
-    if (vertex_count_ <= std::numeric_limits<std::size_t>::max() / vertex_record_size)
-        records_ = allocate_aligned(vertex_count_ * vertex_record_size);
+    if (!exceeds_memory(vertex_count_, vertex_record_size * sizeof(double))) records_ = allocate_aligned(vertex_count_ * vertex_record_size);
     boxes_.reset(new (std::nothrow) MeshBoxes);
     status_ = records_ == nullptr || boxes_ == nullptr ? Status{Error::out_of_memory} : guarded([&] {
         copy_positions(start, end, records_.get());

@@ -70,7 +70,7 @@ constexpr double narrowest_looked_beyond = 0x1p-40;
 
 void decide_touching(const Job& job, std::size_t first, std::size_t count, TileScratch& scratch)
 {
-    if (job.exact || job.parameters.count_roots) {
+    if (job.exact) {
         for (std::size_t w = 0; w < tile_pairs / 64; ++w) scratch.is_undecided[w] |= scratch.may_touch[w];
         return;
     }

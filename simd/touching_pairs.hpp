@@ -18,15 +18,15 @@ template <PairKind kind, class L>
 FASTCCD_INLINE void set_bounds(PolynomialsOf<L>& part, const PolynomialsOf<L>& whole, double times)
 {
     const L factor = broadcast<L>(times);
-    part.cubic_bound = whole.cubic_bound + factor * value_margin(Cubic<L>{whole.cubic[0], whole.cubic[1], whole.cubic[2], whole.cubic[3]});
+    part.cubic_bound = whole.cubic_bound + factor * value_margin(cubic_of(whole));
     for (int axis = 0; axis < 3; ++axis) {
         for (int edge = 0; edge < edge_function_count(kind); ++edge) {
             const auto& e = whole.edges[axis][edge];
-            part.edges[axis][edge].bound = e.bound + factor * value_margin(Quadratic<L>{e.start, e.middle, e.end});
+            part.edges[axis][edge].bound = e.bound + factor * value_margin(quadratic_of(e));
         }
         for (int k = 0; k < gap_count(kind); ++k) {
             const auto& gap = whole.gaps[axis][k];
-            part.gaps[axis][k].bound = gap.bound + factor * value_margin(Linear<L>{gap.start, gap.end});
+            part.gaps[axis][k].bound = gap.bound + factor * value_margin(linear_of(gap));
         }
     }
 }

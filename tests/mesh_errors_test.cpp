@@ -91,7 +91,7 @@ TEST(MeshErrors, NamesWhatIsWrongWithPly)
         {edited("1 0 0", "1 0x1 0"), "line 11: vertex 1: '0x1' is not a number"},
         {edited("1 0 0", "1 1e999 0"),
          "line 11: vertex 1: '1e999' is not a number that double can hold"},
-        {edited("1 0 0", "1 \x01\xff 0"), "line 11: vertex 1: '\?\?' is not a number"},
+        {edited("1 0 0", "1 \x01\xff 0"), "line 11: vertex 1: '\\x01\\xff' is not a number"},
         {edited("3 0 1 2", "3 0 1 3"),
          "line 13: face 0: it refers to vertex 3; the file has vertices 0 to 2"},
         {edited("3 0 1 2", "3 0 1 -1"), "line 13: face 0: it refers to vertex -1"},

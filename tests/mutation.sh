@@ -206,7 +206,7 @@ mutant 'touch: lanes, at the start whatever the shape' $in_leaves 's/counts_as_c
 mutant 'touch: thin pairs, whatever eq. 7 says' $touching 's/thin = thin & !apart_by_area_on<kind>\(pair, s, s\)/static_cast<void>(0)/' touching_test nothing_invented_test
 mutant 'touch: thin pairs, whatever directions say' $touching 's/thin = thin & no_distance_at<kind>\(motion_of<L>\(pair\), time, bounds\)/static_cast<void>(0)/' touching_test nothing_invented_test truth_test
 mutant 'touch: thin pairs, where certificates end not asked' $touching 's/\{s, before\}/{s}/' nothing_invented_test
-mutant 'touch: thin pairs, in units that they are not in' kernels/no_distance.hpp 's/RelativeMotion<L> equal = with_equal_extents\(r\)/RelativeMotion<L> equal = r/' touching_test same_bits_test
+mutant 'touch: thin pairs, in units that they are not in' kernels/no_distance.hpp 's/RelativeMotion<L> normalized = with_normalized_extents\(r\)/RelativeMotion<L> normalized = r/' touching_test same_bits_test
 mutant 'touch: thin pairs, however close at time 0' kernels/no_distance.hpp 's/less_equal\(s, broadcast<L>\(0\.0\)\) \| //' touching_test never_zero_test
 mutant 'touch: thin pairs at the start, whatever directions say' $touching 's/\(thin & no_distance_at<kind>\(motion_of<L>\(pair\), zero, bounds\)\)/thin/' touching_test never_zero_test nothing_invented_test
 mutant 'touch: at the start in line by bounds' $touching 's/well_shaped_at<kind>\(pair, zero, zero\)/well_shaped_at<kind>(pair, zero, broadcast<L>(1.0))/' touching_test

@@ -263,6 +263,7 @@ TEST(Npy, UnfinishedFileLeavesNothing)
         writer.append(numbered_pairs(8).view());
         EXPECT_THROW(writer.commit(), std::logic_error);
         EXPECT_THROW(writer.append(numbered_pairs(16).view()), std::logic_error);
+        EXPECT_THROW(writer.append(slice(numbered_pairs(8).view(), 0, 4)), std::logic_error);
     }
     EXPECT_THROW(NpyWriter(file.path(), Layout::blocked, 9), std::logic_error);
     const std::string name = file.path().filename().string();

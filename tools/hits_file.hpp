@@ -5,11 +5,9 @@
 #include <filesystem>
 #include <span>
 
-#include <fmt/format.h>
-
 #include <fastccd/options.hpp>
 
-#include "output_file.hpp"
+#include "row_file.hpp"
 
 namespace fastccd::tools {
 
@@ -26,14 +24,11 @@ public:
     void append(std::span<const Contact> contacts, std::span<const std::size_t> invalid, std::size_t first_pair);
 
     /// Throws as OutputFile::write and OutputFile::commit.
-    void commit();
+    void commit() { rows_.commit(); }
 
 private:
-    void flush();
-
-    OutputFile file_;
+    RowFile rows_;
     bool proof_;
-    fmt::memory_buffer text_;
 };
 
 }  // namespace fastccd::tools

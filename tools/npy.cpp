@@ -15,6 +15,7 @@
 
 #include "input_error.hpp"
 #include "pair_slice.hpp"
+#include "shown_text.hpp"
 
 namespace fastccd::tools {
 namespace {
@@ -52,7 +53,7 @@ public:
             } else if (key == "shape" && !result.shape) {
                 result.shape = tuple();
             } else {
-                fail(fmt::format("has an unknown or repeated key '{}'", printable(key)));
+                fail(fmt::format("has an unknown or repeated key {}", in_quotes(key)));
             }
             if (!accept(',')) {
                 expect('}');
@@ -65,17 +66,6 @@ public:
             fail("lacks one of 'descr', 'fortran_order', 'shape'");
         }
         return result;
-    }
-
-    /// For messages: control characters and bytes outside ASCII made visible, long text cut.
-    static std::string printable(std::string_view text)
-    {
-        std::string out;
-        for (const char c : text.substr(0, 40)) {
-            const auto byte = static_cast<unsigned char>(c);
-            out += byte >= 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
-        }
-        return text.size() > 40 ? out + "..." : out;
     }
 
 private:
@@ -195,8 +185,8 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::filesystem::path& 
     const std::vector<std::size_t>& shape = *dictionary.shape;
 
     if (dtype != "<f8" && dtype != "<f4") {
-        throw InputError(path, fmt::format("has dtype '{}'; convert to little-endian '<f8' (float64) or '<f4' (float32)",
-                                           HeaderParser::printable(dtype)));
+        throw InputError(path, fmt::format("has dtype {}; convert to little-endian '<f8' (float64) or '<f4' (float32)",
+                                           in_quotes(dtype)));
     }
     if (*dictionary.fortran_order) {
         throw InputError(path, "is in Fortran order; save numpy.ascontiguousarray(...) instead");
@@ -295,6 +285,7 @@ void NpyWriter::append(const PairView& pairs)
     if (promised_ && pairs.size() > *promised_ - appended_) {
         throw std::logic_error("more pairs than the .npy header says");
     }
+    if (layout_ == PairView::Layout::blocked && pairs.size() % block_pairs != 0) throw std::logic_error("a part of a block of pairs");
     appended_ += pairs.size();
     const bool as_is = pairs.layout() == layout_ && pairs.scalar() == PairView::Scalar::float64;
     if (as_is) {

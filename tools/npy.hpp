@@ -56,7 +56,7 @@ public:
     /// InputError.
     NpyWriter(const std::filesystem::path& path, PairView::Layout layout, std::optional<std::size_t> pairs);
 
-    /// Appends pairs; for the blocked layout a multiple of 8 at a time. Throws InputError.
+    /// Appends pairs, of any layout; for the blocked one a multiple of 8 at a time, or std::logic_error. Throws InputError.
     void append(const PairView& pairs);
 
     /// Nothing more is appended: see OutputFile::close. Throws InputError; std::logic_error if not

@@ -10,6 +10,7 @@
 #include "interrupt.hpp"
 #include "mapped_file.hpp"
 #include "rational.hpp"
+#include "shown_text.hpp"
 
 namespace fastccd::tools {
 namespace {
@@ -27,17 +28,6 @@ std::string_view trim(std::string_view text)
     const std::size_t begin = text.find_first_not_of(blanks);
     if (begin == std::string_view::npos) return {};
     return text.substr(begin, text.find_last_not_of(blanks) + 1 - begin);
-}
-
-/// For messages: what stands in a field, made printable and cut.
-std::string shown(std::string_view field)
-{
-    std::string out;
-    for (const char c : field.substr(0, 32)) {
-        const auto byte = static_cast<unsigned char>(c);
-        out += byte >= 0x20 && byte < 0x7f ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
-    }
-    return field.size() > 32 ? out + "..." : out;
 }
 
 class Parser {
@@ -115,7 +105,7 @@ private:
     double rational(std::size_t column) const
     {
         for (const std::size_t c : {column, column + 1}) {
-            if (!is_integer(fields_[c])) fail(c, fmt::format("'{}' is not an integer", shown(fields_[c])));
+            if (!is_integer(fields_[c])) fail(c, fmt::format("{} is not an integer", in_quotes(fields_[c])));
         }
         const RationalValue result = rational_to_double(fields_[column], fields_[column + 1]);
         const auto fraction = [&] { return fmt::format("{}/{}", shown(fields_[column]), shown(fields_[column + 1])); };
@@ -136,7 +126,7 @@ private:
     {
         constexpr std::size_t column = coordinate_columns;
         const std::string_view field = fields_[column];
-        if (field != "0" && field != "1") fail(column, fmt::format("'{}' is neither 0 nor 1", shown(field)));
+        if (field != "0" && field != "1") fail(column, fmt::format("{} is neither 0 nor 1", in_quotes(field)));
         const auto value = static_cast<std::int8_t>(field == "1");
         if (point == 0) {
             truth.push_back(value);

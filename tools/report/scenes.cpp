@@ -12,9 +12,9 @@
 #include <tbb/task_arena.h>
 
 #include "../interrupt.hpp"
-#include "../narrow_phase_run.hpp"
 #include "../scene/frames.hpp"
 #include "../scene/make_scene.hpp"
+#include "../scene/step_mesh.hpp"
 #include "cubic_share.hpp"
 #include "parts.hpp"
 
@@ -67,16 +67,6 @@ std::vector<Scene> public_scenes(const fs::path& data)
     }
     std::ranges::sort(scenes, {}, &Scene::name);
     return scenes;
-}
-
-MovingMesh moving_mesh(const Step& step)
-{
-    MovingMesh mesh{PositionView::rows(step.positions0.data(), step.positions0.size() / 3),
-                    PositionView::rows(step.positions1.data(), step.positions1.size() / 3),
-                    IndexView::rows(step.faces.data(), step.faces.size() / 3, 3),
-                    IndexView::rows(step.edges.empty() ? nullptr : step.edges[0].data(), step.edges.size(), 2)};
-    throw_unless_ok(mesh.status());
-    return mesh;
 }
 
 void find(const Step& step, const VertexFaceSink& sink) { find_vertex_face(step, sink); }

@@ -60,13 +60,4 @@ template bool parse_number(std::string_view, double&);
 template bool parse_number(std::string_view, std::int64_t&);
 template bool parse_number(std::string_view, std::uint64_t&);
 
-std::string in_quotes(std::string_view text)
-{
-    constexpr std::size_t longest = 40;
-    std::string result = "'";
-    for (const char c : text.substr(0, longest)) result += c >= ' ' && c <= '~' ? c : '?';
-    result += text.size() > longest ? "...'" : "'";
-    return result;
-}
-
 }  // namespace fastccd::tools::detail

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <string_view>
 
 // Lines, words and numbers of the text parts of PLY and OBJ files. Safe on arbitrary bytes.
@@ -36,8 +35,5 @@ std::string_view take_word(std::string_view& line);
 /// std::uint64_t.
 template <class T>
 bool parse_number(std::string_view word, T& value);
-
-/// A piece of a file in quotes for a message: shortened, bytes that do not print replaced by '?'.
-std::string in_quotes(std::string_view text);
 
 }  // namespace fastccd::tools::detail

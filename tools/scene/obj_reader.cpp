@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "../shown_text.hpp"
 #include "mesh_formats.hpp"
 #include "mesh_text.hpp"
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "../shown_text.hpp"
 #include "mesh_formats.hpp"
 #include "mesh_text.hpp"
 #include "ply_header.hpp"

@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "../shown_text.hpp"
 #include "mesh_formats.hpp"
 
 namespace fastccd::tools::detail {

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "../shown_text.hpp"
 #include "mesh_formats.hpp"
 #include "mesh_text.hpp"
 #include "ply_body.hpp"

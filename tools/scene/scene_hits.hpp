@@ -4,11 +4,9 @@
 #include <cstddef>
 #include <filesystem>
 
-#include <fmt/format.h>
-
 #include <fastccd/options.hpp>
 
-#include "../output_file.hpp"
+#include "../row_file.hpp"
 #include "pair_vertices.hpp"
 
 namespace fastccd::tools {
@@ -25,14 +23,11 @@ public:
     void append(std::size_t step, PairKind kind, const PairVertices& vertices, const Contact& contact);
 
     /// Throws as OutputFile::write and OutputFile::commit.
-    void commit();
+    void commit() { rows_.commit(); }
 
 private:
-    void flush();
-
-    OutputFile file_;
+    RowFile rows_;
     bool proof_;
-    fmt::memory_buffer text_;
 };
 
 }  // namespace fastccd::tools

@@ -21,6 +21,7 @@
 #include "frames.hpp"
 #include "saved_pairs.hpp"
 #include "scene_hits.hpp"
+#include "step_mesh.hpp"
 
 namespace fastccd::tools {
 namespace {
@@ -96,11 +97,7 @@ public:
         check_interrupt();
         StepTotals totals;
         const Clock::time_point start = Clock::now();
-        const MovingMesh mesh{PositionView::rows(step.positions0.data(), step.positions0.size() / 3),
-                              PositionView::rows(step.positions1.data(), step.positions1.size() / 3),
-                              IndexView::rows(step.faces.data(), step.faces.size() / 3, 3),
-                              IndexView::rows(step.edges.empty() ? nullptr : step.edges[0].data(), step.edges.size(), 2)};
-        throw_unless_ok(mesh.status());
+        const MovingMesh mesh = moving_mesh(step);
         // Part of the narrow phase: a solver that holds its positions otherwise pays it too.
         totals.kinds[0].narrow_seconds = seconds_since(start);
         answer<VertexFace>(step_number, step, mesh, totals.kinds[0]);

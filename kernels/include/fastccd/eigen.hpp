@@ -32,7 +32,7 @@ inline Point point(const Eigen::Ref<const Eigen::Vector3d>& x) { return {x[0], x
 /// Positions of n vertices, an n x 3 matrix of double or float in either storage order, or a block of one. A matrix with
 /// another number of columns gives a view of as many rows without data: MovingMesh reports wrong_size.
 template <class Matrix>
-[[nodiscard]] PositionView positions(const Eigen::DenseBase<Matrix>& matrix)
+[[nodiscard]] PositionView positions(const Eigen::DenseBase<Matrix>& matrix) noexcept
 {
     static_assert(eigen_detail::has_memory<Matrix>, "a view needs a matrix that lies in memory, not an expression");
     static_assert(Matrix::ColsAtCompileTime == 3 || Matrix::ColsAtCompileTime == Eigen::Dynamic, "one column for x, y and z each");
@@ -45,14 +45,14 @@ template <class Matrix>
 /// Faces, n x 3, or edges, n x 2, of int32, in either storage order. A matrix with another number of columns gives a view
 /// without data: MovingMesh reports wrong_size.
 template <class Matrix>
-[[nodiscard]] IndexView faces(const Eigen::DenseBase<Matrix>& matrix)
+[[nodiscard]] IndexView faces(const Eigen::DenseBase<Matrix>& matrix) noexcept
 {
     eigen_detail::check_indices<3, Matrix>();
     const Matrix& m = matrix.derived();
     return {m.cols() == 3 ? m.data() : nullptr, static_cast<std::size_t>(m.rows()), m.rowStride(), m.colStride()};
 }
 template <class Matrix>
-[[nodiscard]] IndexView edges(const Eigen::DenseBase<Matrix>& matrix)
+[[nodiscard]] IndexView edges(const Eigen::DenseBase<Matrix>& matrix) noexcept
 {
     eigen_detail::check_indices<2, Matrix>();
     const Matrix& m = matrix.derived();

@@ -90,8 +90,10 @@ typedef struct fastccd_mesh {
 typedef struct fastccd_contact {
     size_t pair;    /* index of the pair in the input */
     double toi;     /* lower bound of its first time of contact */
-    int32_t proven; /* 1: there is contact, certainly; 0: contact is not excluded, to within rounding */
-    int32_t at_start; /* 1: with a minimum separation: not certainly farther apart than that at t = 0 */
+    int32_t proven; /* 1: there is contact, certainly; 0: contact is not excluded, to within rounding,
+                       distance_tolerance or a cap on the work */
+    int32_t at_start; /* 1: with a minimum separation: not certainly farther apart than that at t = 0
+                         (or before t = 2^-1071) */
 } fastccd_contact;
 
 /* Set `size` before the call. */
@@ -145,8 +147,8 @@ FASTCCD_API int fastccd_vertex_face_toi(const double x0[12], const double x1[12]
 FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], const fastccd_options* options, double* toi);
 
 /* Packed pairs: `pairs` is count x 8 x 3, the points x0..x3 at t = 0, then at t = 1.
- * toi: count values as above. roots, or NULL: count numbers of contact roots (odd: through, or at an end of the step, even: grazing; 0: none, or
- * not countable). `options`, `summary`: or NULL. O(count). */
+ * toi: count values as above. roots, or NULL: count numbers of contact roots (odd: through, or at an end of the step; even: grazing, or in and out
+ * again; 0: none, or not countable). `options`, `summary`: or NULL. O(count). */
 FASTCCD_API int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                              double* toi, uint8_t* roots, fastccd_summary* summary);
 /* The pairs in contact, in pair order: the first `capacity` of them into `contacts`, their number into *found (which may
@@ -160,13 +162,15 @@ FASTCCD_API int fastccd_pairs_find_contacts(int kind, const double* pairs, size_
 FASTCCD_API int fastccd_pairs_earliest_contact(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                                fastccd_contact* contact, fastccd_summary* summary);
 /* The largest step that all candidates together allow: the smallest toi, ties to vertex-face, then to the smaller index.
- * A pair with a NaN or an infinity allows none: FASTCCD_INVALID_PAIR. `fault`: or NULL. */
+ * A pair with a NaN or an infinity allows none: FASTCCD_INVALID_PAIR. Leave out pairs that share a vertex: they touch at time 0.
+ * `fault`: or NULL. */
 FASTCCD_API int fastccd_pairs_collision_free_step(const double* vertex_face, size_t vertex_face_count, const double* edge_edge,
                                                   size_t edge_edge_count, const fastccd_options* options, fastccd_step* step,
                                                   fastccd_fault* fault);
 
-/* Pairs of a mesh: `pairs` is count x 2 indices. Indices are checked before any work. Each call copies the positions,
- * 64 bytes a vertex. `fault`: or NULL. */
+/* Pairs of a mesh: `pairs` is count x 2 indices. Indices, those of faces and edges too, are checked before any work. Each call copies
+ * the positions, 64 bytes a vertex, and, if there are two pairs or more for every vertex and primitive of that kind, makes their boxes,
+ * 32 bytes each: better one call with all pairs of a kind than many with some. `fault`: or NULL. */
 FASTCCD_API int fastccd_mesh_time_of_impact(const fastccd_mesh* mesh, int kind, const int32_t* pairs, size_t count,
                                             const fastccd_options* options, double* toi, uint8_t* roots,
                                             fastccd_summary* summary, fastccd_fault* fault);

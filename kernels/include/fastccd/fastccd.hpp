@@ -40,7 +40,7 @@ namespace fastccd {
 /// apart throughout; NaN: a coordinate of the pair is NaN or infinite. `toi` has one element per pair.
 ///
 /// With Options::minimum_separation d > 0, here and below, contact is a distance of at most d: toi is 0 exactly for the
-/// pairs that are not certainly farther apart at t = 0, and no roots are counted.
+/// pairs that are not certainly farther apart at t = 0 (or before 2^-1071), and no roots are counted.
 ///
 /// `roots`, when not empty, has one element per pair and gets the number of roots of the
 /// coplanarity cubic (paper, eq. 5 and 12) in [0, t_max] at which there is contact: 1 where the cubic changes sign, as at a

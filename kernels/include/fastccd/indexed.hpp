@@ -34,21 +34,21 @@ public:
 
     /// n x 3, one vertex after the other.
     template <class T>
-    static PositionView rows(const T* data, std::size_t n)
+    static PositionView rows(const T* data, std::size_t n) noexcept
     {
         if (data == nullptr) return {data, data, data, 3, n};
         return {data, data + 1, data + 2, 3, n};
     }
     /// n x 3, all x, then all y, then all z.
     template <class T>
-    static PositionView columns(const T* data, std::size_t n)
+    static PositionView columns(const T* data, std::size_t n) noexcept
     {
         if (data == nullptr) return {data, data, data, 1, n};
         return {data, data + n, data + 2 * n, 1, n};
     }
     /// Vertex i at x[i * stride], y[i * stride], z[i * stride]; stride in elements.
     template <class T>
-    static PositionView xyz(const T* x, const T* y, const T* z, std::ptrdiff_t stride, std::size_t n)
+    static PositionView xyz(const T* x, const T* y, const T* z, std::ptrdiff_t stride, std::size_t n) noexcept
     {
         return {x, y, z, stride, n};
     }
@@ -84,8 +84,8 @@ struct IndexView {
     std::ptrdiff_t row_stride = 0;     ///< Elements from a row to the next,
     std::ptrdiff_t column_stride = 0;  ///< and within a row; neither may be 0 where there is more than one.
 
-    static IndexView rows(const std::int32_t* data, std::size_t n, int columns) { return {data, n, columns, 1}; }
-    static IndexView columns(const std::int32_t* data, std::size_t n)
+    static IndexView rows(const std::int32_t* data, std::size_t n, int columns) noexcept { return {data, n, columns, 1}; }
+    static IndexView columns(const std::int32_t* data, std::size_t n) noexcept
     {
         return {data, n, 1, static_cast<std::ptrdiff_t>(n)};
     }

@@ -28,8 +28,8 @@ enum class Isa : std::uint8_t {
 /// What a call asks for; the defaults are those of all functions.
 struct Options {
     /// E_tol: width of the time interval, in units of the step (t in [0, 1]), within which the first contact is located if
-    /// it is a regular one, at which the primitives cross beyond rounding. Where they only touch, toi may be earlier, by as long
-    /// as rounding cannot tell whether they do (README, Accuracy). Positive and finite; values below 2^-50 act as 2^-50.
+    /// it is a regular one, at which the primitives cross beyond rounding. Where they only touch, toi may be earlier: the
+    /// first time at which rounding cannot exclude contact (README, Accuracy). Positive and finite; values below 2^-50 act as 2^-50.
     double tolerance = 1e-9;
     /// Contact is searched in [0, t_max], 0 < t_max <= 1.
     double t_max = 1.0;
@@ -62,7 +62,7 @@ struct Contact {
     /// holds, or Options::exact has settled it; with a minimum separation, the pair certainly comes as close at toi or later.
     /// Otherwise contact is not excluded, to within rounding, distance_tolerance or a cap on the work.
     bool proven = false;
-    /// With a minimum separation: the pair is not certainly farther apart than that at t = 0.
+    /// With a minimum separation: the pair is not certainly farther apart than that at t = 0 (or before 2^-1071).
     bool at_start = false;
 };
 

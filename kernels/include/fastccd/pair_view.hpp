@@ -29,21 +29,21 @@ public:
     PairView() = default;
 
     /// `data`: ceil(size / 8) blocks of [24][8]; lanes past `size` are ignored.
-    static PairView blocked(const double* data, std::size_t size) { return {Layout::blocked, data, size}; }
-    static PairView blocked(const float* data, std::size_t size) { return {Layout::blocked, data, size}; }
+    static PairView blocked(const double* data, std::size_t size) noexcept { return {Layout::blocked, data, size}; }
+    static PairView blocked(const float* data, std::size_t size) noexcept { return {Layout::blocked, data, size}; }
 
     /// `data`: size x 8 x 3, points in the order x0..x3 at t = 0, then x0..x3 at t = 1.
-    static PairView interleaved(const double* data, std::size_t size) { return {Layout::interleaved, data, size}; }
-    static PairView interleaved(const float* data, std::size_t size) { return {Layout::interleaved, data, size}; }
+    static PairView interleaved(const double* data, std::size_t size) noexcept { return {Layout::interleaved, data, size}; }
+    static PairView interleaved(const float* data, std::size_t size) noexcept { return {Layout::interleaved, data, size}; }
 
     /// `coordinates[c][i * stride]` is coordinate c of pair i; stride in elements, may be negative.
     static PairView strided(const std::array<const double*, pair_coordinates>& coordinates, std::ptrdiff_t stride,
-                            std::size_t size)
+                            std::size_t size) noexcept
     {
         return strided_view(coordinates, stride, size);
     }
     static PairView strided(const std::array<const float*, pair_coordinates>& coordinates, std::ptrdiff_t stride,
-                            std::size_t size)
+                            std::size_t size) noexcept
     {
         return strided_view(coordinates, stride, size);
     }

@@ -20,7 +20,7 @@ struct PairToi {
     double toi = std::numeric_limits<double>::quiet_NaN();
     bool proven = false;    ///< See Contact::proven.
     bool at_start = false;  ///< See Contact::at_start.
-    Status status;          ///< An error in the options.
+    Status status;          ///< An error in the options; with Options::exact also out_of_memory.
 };
 
 /// Four points at t = 0, `x0`, and at t = 1, `x1`; the first is the vertex, the others are the face (paper, section 4).

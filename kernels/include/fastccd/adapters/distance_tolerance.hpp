@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 #include <fastccd/eigen.hpp>
 #include <fastccd/single_pair.hpp>
@@ -59,7 +60,7 @@ private:
 /// time, otherwise +infinity. At toi the two are apart by less than the minimum separation plus `distance`, to within
 /// rounding, unless the pair reaches the cap on the work (README, Minimum separation and Accuracy). These interfaces have no other
 /// way to name what cannot be answered: throws std::invalid_argument for a minimum separation that is negative or not finite, t_max
-/// outside [0, 1], a distance that is not positive, and coordinates that are not finite.
+/// outside [0, 1], a distance that is not positive, coordinates that are not finite, and a refusal by the library.
 inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
 {
     if (!is_finite(minimum_separation) || minimum_separation < 0.0)
@@ -78,6 +79,7 @@ inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separa
     if (t_max > 0.0) options.t_max = t_max;
     const Point(&x1)[4] = t_max > 0.0 ? pair.x1 : pair.x0;
     const PairToi found = kind == PairKind::vertex_face ? vertex_face_toi(pair.x0, x1, options) : edge_edge_toi(pair.x0, x1, options);
+    if (!found.status.ok()) throw std::invalid_argument(std::string("fastccd: ") + message(found.status.error));
     if (is_nan(found.toi)) throw std::invalid_argument("fastccd: coordinates must be finite");
     toi = found.toi;
     return is_finite(toi);
