@@ -66,6 +66,12 @@ struct Refinement {
     alignas(64) double guess[RootQueue::capacity];
 };
 
+/// What guesses at the contact of pairs new in `advancing` go by, and what they have come to: ClosingPlanes.
+struct ContactGuesses {
+    alignas(64) double f[4][AdvancingQueue::capacity], n[9][AdvancingQueue::capacity], aim[AdvancingQueue::capacity];
+    alignas(64) double time[AdvancingQueue::capacity];
+};
+
 /// What the last looks at the pairs of `advancing` showed: a Separation.
 struct Looks {
     alignas(64) double n[3][AdvancingQueue::capacity], gap[AdvancingQueue::capacity], square_to_side[AdvancingQueue::capacity];
@@ -109,6 +115,7 @@ struct TileScratch {
     RootQueue slow;          ///< Roots that few steps do not decide, and those after a pair's first.
     Refinement refinement;
     AdvancingQueue advancing;  ///< With a minimum separation: candidates that the first look does not settle.
+    ContactGuesses guesses;
     Looks looks;
     /// The blocks of a group in the native layout, where the input is not ...
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];

@@ -3,7 +3,8 @@
 // The search walks along the time axis. At the time it has got to it looks at the pair, and goes on to the end of the
 // reach of the vector between the primitives: conservative advancement along a fixed direction, hence Newton's method where
 // the primitives approach. It begins with the certificates on halves (farther_certificates.hpp) and a look at the middle of what they leave,
-// whose reach is all of it for most pairs, and a window to jump over for many others. Where the primitives stay close to d for long while they
+// whose reach is all of it for most pairs, and a window to jump over for many others. The next look is where contact probably is
+// (contact_guess.hpp), if that can be told. Where the primitives stay close to d for long while they
 // turn, a fixed vector reaches as far as the excess of the distance over d, one that turns as far as its square root: so the search also
 // looks ahead, to where the secant through the last two distances reaches d, or, after some looks, as far as has gone well, and proves the way
 // there by the volume or by the vectors at both ends of it. Where it sees that this was beyond contact, it looks once more, in between.
@@ -57,6 +58,13 @@ inline constexpr double most_lane_looks = 64;
 /// the look at that time, where the last one was too far ahead, and the one for the proof.
 inline constexpr double most_looks = 4096;
 
+/// The distance at which a look ahead is aimed: halfway to what is close enough.
+template <class L>
+FASTCCD_INLINE L aimed_distance(const SeparationParameters& wanted, const Extents<L>& extents)
+{
+    return broadcast<L>(wanted.aim) + broadcast<L>(0.5 * SeparationParameters::resolution) * sum(extents);
+}
+
 /// Where a step that ends at `time` leads: over the window, if it begins before.
 template <class L>
 FASTCCD_INLINE L past_window(const SeparationRecord<L>& pair, L time)
@@ -83,7 +91,8 @@ FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const ApartOnHa
     pair.purpose = broadcast<L>(going_on);
     pair.at = pair.time;
     pair.n = {zero, zero, zero};
-    pair.high = pair.interval = pair.last_time = pair.last_gap = zero;
+    pair.high = pair.time;  // nothing reaches farther yet
+    pair.interval = pair.last_time = pair.last_gap = zero;
     return less_equal(one, pair.time);
 }
 
@@ -150,7 +159,7 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     const LaneMask<L> stretching = less(broadcast<L>(most_plain_looks), pair.looks);
     const L interval = select<L>(stretching & less(doubled, reach + reach), broadcast<L>(first_stretch) * reach, doubled);
     // Where the distance falls, the line through the last two times and distances tells when it will be close.
-    const L aim = broadcast<L>(wanted.aim) + broadcast<L>(0.5 * SeparationParameters::resolution) * size;
+    const L aim = aimed_distance(wanted, pair.extents);
     const L fall = pair.last_gap - gap;
     const LaneMask<L> falling = less(zero, fall);
     const L until_close = (gap - aim) * ((time - pair.last_time) / fall);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <contact_guess.hpp>
 #include <farther_certificates.hpp>
 #include <following_direction.hpp>
 #include <interval_certificates.hpp>
@@ -94,6 +95,10 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     const ApartOnHalves<double> farther = farther_on_halves<kind>(pair.r, bounds, pair.extents);
     if ((farther.first & farther.second).value) return {.toi = never};
     if (first_look<kind>(pair, farther, parameters).value) return {.toi = never, .intervals = 1};
+    const ClosingPlanes<double> planes = closing_planes<kind>(pair, parameters);
+    double guess = pair.time;
+    for (int k = 0; k < guess_steps; ++k) guess = next_guess(planes, guess);
+    look_at_guess(pair, guess);
     SearchResult result = walk<kind>(pair, parameters, limit);
     if (result.toi <= 1.0) result.toi = parameters.time(result.toi);
     return result;

@@ -167,6 +167,20 @@ FASTCCD_INLINE Record<L> load(const double (&rows)[4][size], unsigned i)
     return {Lane<L>::load(&rows[0][i]), Lane<L>::load(&rows[1][i]), Lane<L>::load(&rows[2][i]), Lane<L>::load(&rows[3][i])};
 }
 
+/// A vector, in rows from `row` on.
+template <std::size_t rows_, std::size_t size, class L>
+FASTCCD_INLINE void store(double (&rows)[rows_][size], unsigned row, unsigned i, const Vector3<L>& v)
+{
+    Lane<L>::store(&rows[row][i], v.x);
+    Lane<L>::store(&rows[row + 1][i], v.y);
+    Lane<L>::store(&rows[row + 2][i], v.z);
+}
+template <class L, std::size_t rows_, std::size_t size>
+FASTCCD_INLINE Vector3<L> load(const double (&rows)[rows_][size], unsigned row, unsigned i)
+{
+    return {Lane<L>::load(&rows[row][i]), Lane<L>::load(&rows[row + 1][i]), Lane<L>::load(&rows[row + 2][i])};
+}
+
 /// Moves what lies from `first` on to the front.
 template <class Queue>
 FASTCCD_INLINE void drop_front(Queue& queue, unsigned first)

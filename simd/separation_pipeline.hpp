@@ -1,8 +1,8 @@
 // The stages of a minimum separation over one tile:
 //
-//     block -> certificates -> [candidates] -> certificates -> first look -> [advancing] -> look -> step -> contact or farther
-//                   |                           in double          |             ^                   |
-//                   v                               |              v             +-------------------+
+//     block -> certificates -> [candidates] -> certificates -> first look -> [advancing] -> guess, once -> look -> step -> contact
+//                   |                           in double          |             ^                                  |    or farther
+//                   v                               |              v             +----------------------------------+
 //                farther                            +-------->  farther
 //
 // Certificates are those of farther_certificates.hpp. As in pipeline.hpp they run in single precision first where that makes lanes of it, by bounds
@@ -13,6 +13,7 @@
 // until there are enough for another round.
 #pragma once
 
+#include <contact_guess.hpp>
 #include <farther_certificates.hpp>
 #include <screened_parts.hpp>
 #include <separation_steps.hpp>
@@ -58,6 +59,7 @@ private:
     const double limit_;
     TileScratch& scratch_;
     BlockSource<kind, L> source_;
+    unsigned first_new_ = 0;  ///< Pairs from here on in [advancing] have had their first look alone.
 
     FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& scratch)
         : parameters_{*request.parameters}, bounds_{SeparationBounds{parameters_.bounds.rho}.certificates(parameters_.separation)},
@@ -139,37 +141,67 @@ private:
         }
     }
 
+    /// Guesses of the pairs from `first` on. Every step is done for all of them before the next one, as for roots (root_stages.hpp).
+    void guess_contacts(unsigned first)
+    {
+        ContactGuesses& guesses = scratch_.guesses;
+        const unsigned begin = first / width * width, end = scratch_.advancing.size;
+        for (unsigned i = begin; i < end; i += width) {
+            SeparationRecord<L> record;
+            read(scratch_.advancing, i, record);
+            const ClosingPlanes<L> planes = closing_planes<kind>(record, parameters_);
+            store(guesses.f, i, planes.f);
+            store(guesses.n, 0, i, planes.n0);
+            store(guesses.n, 3, i, planes.n1);
+            store(guesses.n, 6, i, planes.n2);
+            Lane<L>::store(&guesses.aim[i], planes.aim);
+            Lane<L>::store(&guesses.time[i], record.time);
+        }
+        for (int k = 0; k < guess_steps; ++k)
+            for (unsigned i = begin; i < end; i += width) {
+                const ClosingPlanes<L> planes{load<PowerCubic, L>(guesses.f, i), load<L>(guesses.n, 0, i), load<L>(guesses.n, 3, i),
+                                              load<L>(guesses.n, 6, i), Lane<L>::load(&guesses.aim[i])};
+                Lane<L>::store(&guesses.time[i], next_guess(planes, Lane<L>::load(&guesses.time[i])));
+            }
+    }
+
+    /// Pairs i, i + 1, ... on their way; of new ones, the next look is at the guess.
+    FASTCCD_INLINE SeparationRecord<L> record_at(unsigned i) const
+    {
+        SeparationRecord<L> record;
+        read(scratch_.advancing, i, record);
+        look_at_guess(record, Lane<L>::load(&scratch_.guesses.time[i]));
+        return record;
+    }
+
     /// A step of all pairs on their way; those that go on move to the front. First all looks, then what follows from them: a look is one chain
     /// of operations, with three divisions and a root in it, and a processor overlaps it with the next as far as it sees that (bench/LIMITS.md).
     void advance()
     {
         AdvancingQueue& queue = scratch_.advancing;
         const unsigned size = queue.size;
+        if (first_new_ < size) guess_contacts(first_new_);
         for (unsigned i = 0; i < size; i += width) look_again(i);
         queue.size = 0;
         for (unsigned i = 0; i < size; i += width) step_on(i, lanes_in_use<L>(size - i));
+        first_new_ = queue.size;
     }
 
     FASTCCD_INLINE void look_again(unsigned i)
     {
-        SeparationRecord<L> record;
-        read(scratch_.advancing, i, record);
+        const SeparationRecord<L> record = record_at(i);
         const Separation<L> seen = separation<kind>(positions(record.r, record.at).r);
         Looks& looks = scratch_.looks;
-        Lane<L>::store(&looks.n[0][i], seen.n.x);
-        Lane<L>::store(&looks.n[1][i], seen.n.y);
-        Lane<L>::store(&looks.n[2][i], seen.n.z);
+        store(looks.n, 0, i, seen.n);
         Lane<L>::store(&looks.gap[i], seen.gap);
         Lane<L>::store(&looks.square_to_side[i], seen.square_to_side);
     }
 
     FASTCCD_INLINE void step_on(unsigned i, unsigned lanes)
     {
-        SeparationRecord<L> record;
-        read(scratch_.advancing, i, record);
+        SeparationRecord<L> record = record_at(i);
         const Looks& looks = scratch_.looks;
-        const Separation<L> seen{{Lane<L>::load(&looks.n[0][i]), Lane<L>::load(&looks.n[1][i]), Lane<L>::load(&looks.n[2][i])},
-                                 Lane<L>::load(&looks.gap[i]), Lane<L>::load(&looks.square_to_side[i])};
+        const Separation<L> seen{load<L>(looks.n, 0, i), Lane<L>::load(&looks.gap[i]), Lane<L>::load(&looks.square_to_side[i])};
         const StepOutcome<L> outcome = step<kind>(record, seen, parameters_, limit_);
         const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
         if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));

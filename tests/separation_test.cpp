@@ -397,6 +397,31 @@ TEST(Separation, BoundedLooks)
     }
 }
 
+/// The first look, one at the guess, and the one for the proof: where the planes close, as for most contacts, little more is needed.
+TEST(Separation, GuessesAreGoodForMostContacts)
+{
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs;
+        generate("uniform", kind, 119, 4000, pairs);
+        for (const double relative : {1e-6, 1e-3}) {
+            std::size_t contacts = 0, looks = 0, few = 0;
+            for (const oracle::Pair& pair : pairs) {
+                const double d = relative * size_of(pair), toi = search(kind, pair, options_for(d)).toi;
+                if (!(toi > 0.0 && toi <= 1.0)) continue;
+                const unsigned count = looks_at(kind, pair, d);
+                ++contacts;
+                looks += count;
+                few += count <= 4;
+            }
+            std::printf("d %g s: %zu contacts, %.2f looks each, at most 4 for %zu\n", relative, contacts,
+                        static_cast<double>(looks) / static_cast<double>(contacts), few);
+            EXPECT_GT(contacts, 200u);
+            EXPECT_LT(looks, 6 * contacts);  // without guesses more than eight each
+            EXPECT_GT(2 * few, contacts);
+        }
+    }
+}
+
 TEST(Separation, FollowedPairs)
 {
     for (const auto& [kind, distance, pair] : followed_pairs) {
