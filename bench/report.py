@@ -268,7 +268,7 @@ def tables(record):
 def write_readme():
     records = {path.stem: json.loads(path.read_text()) for path in sorted((HERE / "results").glob("*.json"))}
     text = ("# Results\n\nWritten by `tools/bench.sh` from the records beside it; [../README.md](../README.md) says what is measured. The report of speed\n"
-            "against error is in `report/`, what `tools/run.sh` printed in `run.txt`, what `truth_test` printed in `truth.txt`.\n\n")
+            "against error is in `report/`, what `tools/run.sh` printed in `run.txt`, what `truth_test` printed in `truth.txt` and, as a table, in `sets.md`.\n\n")
     text += "".join(f"- [{name}](#{name})\n" for name in records)
     (HERE / "results" / "README.md").write_text(text + "".join(f"\n### {name}\n\n{tables(record)}" for name, record in records.items()))
 

@@ -174,8 +174,9 @@ private:
         return record;
     }
 
-    /// A step of all pairs on their way; those that go on move to the front. First all looks, then what follows from them: a look is one chain
-    /// of operations, with three divisions and a root in it, and a processor overlaps it with the next as far as it sees that (bench/LIMITS.md).
+    /// A step of all pairs on their way; those that go on move to the front. First all looks, then what follows from them: a look is one
+    /// chain of operations, with three divisions and a root in it, and a processor overlaps it with the next as far as it sees that
+    /// (bench/LIMITS_SEARCH.md).
     void advance()
     {
         AdvancingQueue& queue = scratch_.advancing;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the README shows of embedding is what the tests build and run: program, CMakeLists.txt and output, letter by letter.
+# What the README shows of embedding is what the tests build and run: programs, CMakeLists.txt and output, letter by letter.
 # Argument: source folder.
 set -euo pipefail
 source=$1
@@ -12,5 +12,6 @@ compare() {
 compare "two_meshes.cpp" find_package/two_meshes.cpp
 compare "CMakeLists.txt" find_package/CMakeLists.txt
 compare "two_meshes output" expected.txt
+compare "pairs.py" pairs.py
 [ "$(grep -c . "$source/tests/consumer/find_package/two_meshes.cpp")" -le 25 ] || { echo "FAILED: the program has grown past 25 lines" >&2; exit 1; }
 echo "the README shows what is tested"

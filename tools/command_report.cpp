@@ -31,7 +31,7 @@ void add_report_command(CLI::App& app)
                      "Also use public data: DIR/hardcases, DIR/queries, DIR/scenes,\nas far as they are there")
         ->check(CLI::ExistingDirectory)
         ->type_name("DIR");
-    command->add_flag("--quick", options->quick, "Fewer pairs, sizes and repeats: minutes instead of many");
+    command->add_flag("--quick", options->quick, "Fewer pairs, sizes and repeats: a minute instead of several");
     command->add_flag("--quiet", options->quiet, "No progress bar, and nothing on standard output");
     command->add_option("--draw", options->draw, "Measure nothing: draw page and pictures again from an earlier\nreport.json")
         ->check(CLI::ExistingFile)

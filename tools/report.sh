@@ -4,7 +4,7 @@
 #   tools/report.sh [--quick] [--out DIR] [--pairs N] [--data DIR] [ARGUMENT...]   arguments go to `fastccd report`
 #   tools/report.sh --record   into bench/results/report, public data included if they are there, and its table into README.md
 #
-# About 10 minutes on two cores, with --quick less than one, and two more for building. Default folder: build/report.
+# 3 to 10 minutes on two cores, with --quick about one, and two more for building. Default folder: build/report.
 source "$(dirname "$0")/setup.sh"
 
 record=false
