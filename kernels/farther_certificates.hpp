@@ -79,29 +79,17 @@ FASTCCD_INLINE ApartOnHalves<L> farther_on_halves(const CoplanarityCubic<L>& f, 
                                                   const QuadraticVector<L>& t, const QuadraticVector<L>& s, const Extents<L>& extents,
                                                   const Scales<L>& scale, const FartherBounds& bounds)
 {
-    const HalvedCubic<L> cubic = evened(halved(f));
     const L volume_bound = broadcast<L>(bounds.halves.cubic) * scale.volume +
                            broadcast<L>(12.0 * bounds.distance) * longest(normal<kind>(p, q, t), scale, bounds);
-    const auto beyond = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(volume_bound, c[0], c[1], c[2], c[3]); };
-    LaneMask<L> first = beyond(cubic.first), second = beyond(cubic.second);
-
-    const auto along = [&](auto component, L area, L sum_of_extents) FASTCCD_INLINE_LAMBDA {
-        const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
-            return evened(halved(component(v.start), component(v.twice_middle), component(v.end)));
-        };
-        // In the projection r1 is at most as long as the sum of its extents, and a difference of two r_i twice that.
-        const L of_r1 = broadcast<L>(4.0 * bounds.distance) * sum_of_extents, of_difference = of_r1 + of_r1;
-        const L rounding = broadcast<L>(bounds.halves.quadratic) * area, rounding_sum = broadcast<L>(bounds.halves.quadratic_sum) * area;
-        const ApartOnHalves<L> apart = apart_on_halves_in_projection<kind, L>(
-            halves_of(p), halves_of(q), halves_of(t), halves_of(s),
-            rounding + (kind == PairKind::vertex_face ? of_difference : of_r1), rounding_sum + of_difference);
-        first = first | apart.first;
-        second = second | apart.second;
-    };
-    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz, extents.y + extents.z);
-    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx, extents.z + extents.x);
-    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy, extents.x + extents.y);
-    return {first, second};
+    const L extent[3] = {extents.x, extents.y, extents.z};
+    return apart_on_halves<kind>(
+        evened(halved(f)), volume_bound, p, q, t, s, scale, [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA { return evened(h); },
+        [&](L area, int a, int b) FASTCCD_INLINE_LAMBDA -> ProjectionBounds<L> {
+            // In the projection r1 is at most as long as the sum of its extents, and a difference of two r_i twice that.
+            const L of_r1 = broadcast<L>(4.0 * bounds.distance) * (extent[a] + extent[b]), of_difference = of_r1 + of_r1;
+            return {broadcast<L>(bounds.halves.quadratic) * area + (kind == PairKind::vertex_face ? of_difference : of_r1),
+                    broadcast<L>(bounds.halves.quadratic_sum) * area + of_difference};
+        });
 }
 
 /// Farther than d on each half by any of the certificates: a gap along an axis, or those of halves. What farther_by_volume() proves is included,

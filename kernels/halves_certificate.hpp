@@ -60,6 +60,36 @@ FASTCCD_INLINE ApartOnHalves<L> apart_on_halves_in_projection(const HalvedQuadra
             apart_in_projection<kind, L>(on_second(p), on_second(q), on_second(t), on_second(s), bound, bound_sum)};
 }
 
+/// Bounds of edge functions and of sums of two, in one coordinate projection.
+template <class L>
+struct ProjectionBounds {
+    L single, sum;
+};
+
+/// On either half by the cubic, or in at least one coordinate projection. multiple(h): the multiples of a HalvedQuadratic that are compared;
+/// bounds(area, a, b): of the projection whose scale is `area` and whose axes are number a and b.
+template <PairKind kind, class L, class Multiple, class Bounds>
+FASTCCD_INLINE ApartOnHalves<L> apart_on_halves(const HalvedCubic<L>& cubic, L volume_bound, const QuadraticVector<L>& p,
+                                                const QuadraticVector<L>& q, const QuadraticVector<L>& t, const QuadraticVector<L>& s,
+                                                const Scales<L>& scale, Multiple multiple, Bounds bounds)
+{
+    const auto never_coplanar = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(volume_bound, c[0], c[1], c[2], c[3]); };
+    LaneMask<L> first = never_coplanar(cubic.first), second = never_coplanar(cubic.second);
+    const auto along = [&](auto component, const ProjectionBounds<L>& bound) FASTCCD_INLINE_LAMBDA {
+        const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
+            return multiple(halved(component(v.start), component(v.twice_middle), component(v.end)));
+        };
+        const ApartOnHalves<L> apart =
+            apart_on_halves_in_projection<kind, L>(halves_of(p), halves_of(q), halves_of(t), halves_of(s), bound.single, bound.sum);
+        first = first | apart.first;
+        second = second | apart.second;
+    };
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, bounds(scale.yz, 1, 2));
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, bounds(scale.zx, 2, 0));
+    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, bounds(scale.xy, 0, 1));
+    return {first, second};
+}
+
 /// On either half by the cubic certificate, or by the quadratic one in at least one coordinate projection. `bounds` are ErrorBounds::halves().
 template <PairKind kind, class L>
 FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f, const QuadraticVector<L>& p,
@@ -67,25 +97,12 @@ FASTCCD_INLINE ApartOnHalves<L> halves_certificate(const CoplanarityCubic<L>& f,
                                                    const QuadraticVector<L>& s, const Scales<L>& scale,
                                                    const CertificateBounds& bounds)
 {
-    const HalvedCubic<L> cubic = halved(f);
-    const L volume_bound = broadcast<L>(bounds.cubic) * scale.volume;
-    const auto never_coplanar = [&](const L(&c)[4]) FASTCCD_INLINE_LAMBDA { return one_sign(volume_bound, c[0], c[1], c[2], c[3]); };
-    LaneMask<L> first = never_coplanar(cubic.first), second = never_coplanar(cubic.second);
-
-    const auto along = [&](auto component, L area) FASTCCD_INLINE_LAMBDA {
-        const auto halves_of = [&](const QuadraticVector<L>& v) FASTCCD_INLINE_LAMBDA {
-            return halved(component(v.start), component(v.twice_middle), component(v.end));
-        };
-        const ApartOnHalves<L> apart = apart_on_halves_in_projection<kind, L>(halves_of(p), halves_of(q), halves_of(t), halves_of(s),
-                                                                             broadcast<L>(bounds.quadratic) * area,
-                                                                             broadcast<L>(bounds.quadratic_sum) * area);
-        first = first | apart.first;
-        second = second | apart.second;
-    };
-    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.x; }, scale.yz);
-    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.y; }, scale.zx);
-    along([](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return v.z; }, scale.xy);
-    return {first, second};
+    return apart_on_halves<kind>(
+        halved(f), broadcast<L>(bounds.cubic) * scale.volume, p, q, t, s, scale,
+        [](const HalvedQuadratic<L>& h) FASTCCD_INLINE_LAMBDA { return h; },
+        [&](L area, int, int) FASTCCD_INLINE_LAMBDA -> ProjectionBounds<L> {
+            return {broadcast<L>(bounds.quadratic) * area, broadcast<L>(bounds.quadratic_sum) * area};
+        });
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

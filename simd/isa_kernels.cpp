@@ -8,8 +8,7 @@
 #endif
 
 #include <interval_certificates.hpp>
-#include <pipeline.hpp>
-#include <separation_pipeline.hpp>
+#include <run_tile.hpp>
 #include <touching_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
@@ -22,13 +21,7 @@ using KernelLane = double;
 
 namespace {
 
-void run_kernel_tile(const TileRequest& request, TileScratch& scratch)
-{
-    if (request.parameters->separation.distance > 0.0)
-        run_separation_tile<KernelLane>(request, scratch);
-    else
-        run_tile<KernelLane>(request, scratch);
-}
+void run_kernel_tile(const TileRequest& request, TileScratch& scratch) { run_tile<KernelLane>(request, scratch); }
 
 template <PairKind kind, class L>
 unsigned apart_on_lanes(const PairCoefficients& pair, const double* starts, const double* ends, unsigned met, bool by_area)

@@ -293,13 +293,4 @@ private:
     }
 };
 
-template <class L>
-FASTCCD_INLINE void run_tile(const TileRequest& request, TileScratch& scratch)
-{
-    if (request.kind == PairKind::vertex_face)
-        Pipeline<PairKind::vertex_face, L>::run_tile(request, scratch);
-    else
-        Pipeline<PairKind::edge_edge, L>::run_tile(request, scratch);
-}
-
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

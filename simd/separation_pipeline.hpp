@@ -224,13 +224,4 @@ private:
     }
 };
 
-template <class L>
-FASTCCD_INLINE void run_separation_tile(const TileRequest& request, TileScratch& scratch)
-{
-    if (request.kind == PairKind::vertex_face)
-        SeparationPipeline<PairKind::vertex_face, L>::run_tile(request, scratch);
-    else
-        SeparationPipeline<PairKind::edge_edge, L>::run_tile(request, scratch);
-}
-
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -9,7 +9,7 @@
 #include <random>
 
 #include <leaf_search.hpp>
-#include <pipeline.hpp>
+#include <run_tile.hpp>
 
 #include "amount.hpp"
 #include "bounds/measured_bound.hpp"

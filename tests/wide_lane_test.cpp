@@ -3,8 +3,7 @@
 
 #include <memory>
 
-#include <pipeline.hpp>
-#include <separation_pipeline.hpp>
+#include <run_tile.hpp>
 
 #include "array_lane.hpp"
 #include "generators.hpp"
@@ -91,7 +90,7 @@ TEST(WideLanes, KeepADistanceAsTheScalarSearchDoes)
             const SearchParameters parameters{options.tolerance, 1.0, false,
                                               SeparationParameters{options.minimum_separation, options.distance_tolerance}};
             const Answer expected = answer(kind, view, options);
-            FASTCCD_KERNEL_NAMESPACE::run_separation_tile<FASTCCD_KERNEL_NAMESPACE::Array<double, 8>>(
+            FASTCCD_KERNEL_NAMESPACE::run_tile<FASTCCD_KERNEL_NAMESPACE::Array<double, 8>>(
                 {pair_kind(kind), &source, 0, pairs.size(), &parameters, 1.0}, *scratch);
             for (std::size_t i = 0; i < pairs.size(); ++i) {
                 if (is_set(scratch->is_undecided, i)) continue;
