@@ -22,7 +22,15 @@ struct ClosingPlanes {
                             ///< the way to the guess.
     Vector3<L> n0, n1, n2;  ///< n = n0 + s (n1 + s n2).
     L aim;                  ///< The distance to come to, in units of the coordinates.
+    L begin;                ///< The time to begin at; infinite where the planes are as close already, so that no guess comes of it.
 };
+
+/// n at s.
+template <class L>
+FASTCCD_INLINE Vector3<L> normal_at(const ClosingPlanes<L>& planes, L s)
+{
+    return add(planes.n0, scaled(add(planes.n1, scaled(planes.n2, s)), s));
+}
 
 template <PairKind kind, class L>
 FASTCCD_INLINE ClosingPlanes<L> closing_planes(const SeparationRecord<L>& pair, const SearchParameters& parameters)
@@ -33,16 +41,20 @@ FASTCCD_INLINE ClosingPlanes<L> closing_planes(const SeparationRecord<L>& pair, 
     const auto positive = [&](L coefficient) FASTCCD_INLINE_LAMBDA { return times_sign(coefficient, value); };
     const double bound = SeparationBounds{parameters.bounds.rho}.volume_between() / 3.0;  // of f, where that is of three times f
     const L room = broadcast<L>(2.0 * bound) * scales(pair.extents).volume;
-    return {{positive(f.c0) - room, positive(f.c1), positive(f.c2), positive(f.c3)},
-            n.start, subtract(n.twice_middle, add(n.start, n.start)), add(subtract(n.start, n.twice_middle), n.end),
-            aimed_distance(parameters.separation, pair.extents)};
+    ClosingPlanes<L> planes{{positive(f.c0) - room, positive(f.c1), positive(f.c2), positive(f.c3)},
+                            n.start, subtract(n.twice_middle, add(n.start, n.start)), add(subtract(n.start, n.twice_middle), n.end),
+                            aimed_distance(parameters.separation, pair.extents), broadcast<L>(__builtin_inf())};
+    const Vector3<L> there = normal_at(planes, pair.time);
+    const LaneMask<L> closing = less(planes.aim * sqrt(dot(there, there)), abs(value) - room);
+    planes.begin = select<L>(closing, pair.time, planes.begin);
+    return planes;
 }
 
 /// One step from s, by f - d |n|, whose slope is f' - d n . n' / |n|. Any value, NaN included, where the planes do not close.
 template <class L>
 FASTCCD_INLINE L next_guess(const ClosingPlanes<L>& planes, L s)
 {
-    const Vector3<L> n = add(planes.n0, scaled(add(planes.n1, scaled(planes.n2, s)), s));
+    const Vector3<L> n = normal_at(planes, s);
     const L length = sqrt(dot(n, n));
     const Vector3<L> slope = add(planes.n1, scaled(planes.n2, s + s));
     const PowerCubic<L> excess{planes.f.c0, planes.f.c1 - planes.aim * (dot(n, slope) / length), planes.f.c2, planes.f.c3};

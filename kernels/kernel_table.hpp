@@ -23,7 +23,7 @@ struct LaneQueue {
     static constexpr unsigned fields = field_count;
     /// A stage drains the queue when it holds this many entries ...
     static constexpr unsigned drain_at = 64;
-    /// ... and until that is asked, a batch of screening adds at most two batches of doubles. Storing the last ones, or reading them,
+    /// ... and between two such checks, a batch of screening adds at most two batches of doubles. Storing the last ones, or reading them,
     /// touches a full batch.
     static constexpr unsigned most_added = 2 * most_lanes;
     static constexpr unsigned capacity = drain_at + most_added;
@@ -66,7 +66,7 @@ struct Refinement {
     alignas(64) double guess[RootQueue::capacity];
 };
 
-/// What guesses at the contact of pairs new in `advancing` go by, and what they have come to: ClosingPlanes.
+/// Of pairs new in `advancing`: ClosingPlanes, and the times that guesses have come to.
 struct ContactGuesses {
     alignas(64) double f[4][AdvancingQueue::capacity], n[9][AdvancingQueue::capacity], aim[AdvancingQueue::capacity];
     alignas(64) double time[AdvancingQueue::capacity];

@@ -31,11 +31,11 @@ struct SeparationRecord {
     L looks;                    ///< How often the pair has been looked at.
     L purpose;                  ///< Of the next look: one of those below.
     L at;                       ///< Time of the next look.
-    // While looking ahead:
+    // While looking ahead; of a pair that has not been looked at at `time` yet, 0, `time` and 0:
     Vector3<L> n;  ///< Vector at `time`,
     L high;        ///< how far it reaches,
-    L interval;    ///< and the time to look ahead at most; 0: any.
-    L last_time, last_gap;  ///< The last time the search had got to, and the distance then, from below.
+    L last_time, last_gap;  ///< the last time the search had got to, and the distance then, from below.
+    L interval;    ///< And the time to look ahead at most; 0: any.
 };
 
 /// Purposes of a look: to go on from `time`; to go on from there to `at`, by more than one vector, or to less after `at` was too far; to prove
@@ -166,7 +166,8 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
     const L ahead = min(time + span, one);
     const LaneMask<L> look_ahead = advancing & (stretching | (falling & less(reach, span))) & less(next, ahead);
-    // A look too far, at which the pair was too close already, leaves the time between to look at, once.
+    // A look too far, at which the pair was too close already, leaves the time between to look at, once; not after a guess, since with a
+    // last distance of 0 at_aim is beyond `at`.
     const L at_aim = time + (pair.last_gap - aim) * ((pair.at - time) / (pair.last_gap - gap));
     const LaneMask<L> less_far = too_far & less(pair.purpose, broadcast<L>(looking_less_far)) & less(gap, aim) & less(next, at_aim) &
                                  less(at_aim, pair.at) & less(pair.looks, broadcast<L>(most_looks));

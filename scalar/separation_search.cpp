@@ -96,7 +96,7 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     if ((farther.first & farther.second).value) return {.toi = never};
     if (first_look<kind>(pair, farther, parameters).value) return {.toi = never, .intervals = 1};
     const ClosingPlanes<double> planes = closing_planes<kind>(pair, parameters);
-    double guess = pair.time;
+    double guess = planes.begin;
     for (int k = 0; k < guess_steps; ++k) guess = next_guess(planes, guess);
     look_at_guess(pair, guess);
     SearchResult result = walk<kind>(pair, parameters, limit);

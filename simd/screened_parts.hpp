@@ -51,6 +51,7 @@ template <PairKind kind, class S, class L>
 FASTCCD_INLINE void queue_parts(PairQueue& candidates, const BlockSource<kind, L>& source, const Parts<S, L>& parts, std::size_t first, S mark,
                                 unsigned lanes, double t_max)
 {
+    static_assert(Lane<S>::width <= PairQueue::most_added && Lane<L>::width <= most_lanes);
     if constexpr (Parts<S, L>::count == 2) {
         if constexpr (Lane<L>::can_join) {
             const auto count = static_cast<unsigned>(__builtin_popcount(lanes));

@@ -155,12 +155,12 @@ private:
             store(guesses.n, 3, i, planes.n1);
             store(guesses.n, 6, i, planes.n2);
             Lane<L>::store(&guesses.aim[i], planes.aim);
-            Lane<L>::store(&guesses.time[i], record.time);
+            Lane<L>::store(&guesses.time[i], planes.begin);
         }
         for (int k = 0; k < guess_steps; ++k)
             for (unsigned i = begin; i < end; i += width) {
                 const ClosingPlanes<L> planes{load<PowerCubic, L>(guesses.f, i), load<L>(guesses.n, 0, i), load<L>(guesses.n, 3, i),
-                                              load<L>(guesses.n, 6, i), Lane<L>::load(&guesses.aim[i])};
+                                              load<L>(guesses.n, 6, i), Lane<L>::load(&guesses.aim[i]), {}};
                 Lane<L>::store(&guesses.time[i], next_guess(planes, Lane<L>::load(&guesses.time[i])));
             }
     }

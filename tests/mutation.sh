@@ -313,6 +313,9 @@ mutant 'farther: single precision without margins' $separation 's/\(54 \+ 114 \+
 mutant 'farther: bounds = 0' $separation 's/\(162 \* rho \+ 435 \+ 2 \* slack\) \* u/0.0/; s/\(21 \* rho \+ 49 \+ slack\) \* u/0.0/; s/\{\(216 \* rho \+ 642 \+ slack\) \* u, \(16 \* rho \+ 36 \+ slack\) \* u, \(48 \* rho \+ 148 \+ slack\) \* u/{0.0, 0.0, 0.0/' error_bounds_test
 mutant 'farther: bounds between = 0' $separation 's/\(216 \* \(rho \+ 3\) \+ 600 \+ slack\) \* u/0.0/; s/\(84 \* \(rho \+ 3\) \+ 195 \+ slack\) \* u/0.0/' error_bounds_test
 mutant 'separation: guesses not looked at' kernels/contact_guess.hpp 's/ahead = less_equal\(pair\.looks, one\) & /ahead = no_lanes<L>() & /' separation_test
+mutant 'separation: back to the start after a wrong guess' kernels/separation_steps.hpp 's/pair\.high = pair\.time;/pair.high = zero;/' separation_test
+mutant 'separation: guesses where the planes are close already' kernels/contact_guess.hpp 's/const LaneMask<L> closing = .*?;/const LaneMask<L> closing = all_lanes<L>();/' separation_test
+mutant 'separation: guesses without room for the bound' kernels/contact_guess.hpp 's/2\.0 \* bound/0.0 * bound/' separation_test
 mutant 'separation: guesses for a distance of 0' kernels/contact_guess.hpp 's/planes\.aim/broadcast<L>(0.0)/g' separation_test
 mutant 'separation: guesses of lanes that are not new' kernels/contact_guess.hpp 's/less_equal\(pair\.looks, one\) & //' separation_bits_test
 mutant 'separation: pairs beyond single precision dropped' simd/separation_pipeline.hpp 's/push\(scratch_\.candidates, decidable, record\);//' wide_lane_test

@@ -126,7 +126,7 @@ void add_separation_options(CLI::App& command, CommonOptions& options)
         ->excludes("--exact");
     command
         .add_option("--distance-tolerance", options.narrow_phase.distance_tolerance,
-                    "Pairs at most (1 + X) D apart count as in contact")
+                    "Pairs at most (1 + X) D apart may count as in contact")
         ->check(at_least_zero)
         ->type_name("X")
         ->needs("--min-separation")

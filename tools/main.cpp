@@ -111,8 +111,9 @@ constexpr const char* footer = R"(Examples:
   fastccd isa
 
 Exit status: 0 all pairs answered, invalid ones named; 1 a file cannot be used, or
-memory or threads are refused; 2 the command line is wrong. Ended by a signal, as shells count it: 130 by Ctrl-C,
-143 by termination, 141 because the reader of the output went away.)";
+memory or threads are refused; 2 the command line is wrong. Ended by a signal, as
+shells count it: 130 by Ctrl-C, 143 by termination, 141 because the reader of the
+output went away.)";
 
 }  // namespace
 

@@ -11,7 +11,7 @@
 
 namespace fastccd::tools {
 
-/// Collects rows to large pieces for an OutputFile, whose meaning of "-" it has.
+/// Collects rows into large pieces for an OutputFile, whose meaning of "-" it has.
 class RowFile {
 public:
     /// Throws InputError.

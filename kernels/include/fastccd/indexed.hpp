@@ -114,8 +114,8 @@ public:
         return *this;
     }
     /// Positions at t = 0 and t = 1 of the same vertices; faces n x 3 and edges n x 2, either may be empty.
-    /// status() tells what is wrong, if anything: wrong_size for positions of different size, missing data or indices with a
-    /// stride of 0 (and for a mesh made by default), bad_face_index, then bad_edge_index, with the row at fault as `pair`,
+    /// status() tells what is wrong, if anything: wrong_size for positions of different size, missing data, more than memory can
+    /// hold or indices with a stride of 0 (and for a mesh made by default), bad_face_index, then bad_edge_index, with the row at fault as `pair`,
     /// out_of_memory. Calls that are given a mesh with an error return that error. O(vertices + faces + edges), positions on all
     /// threads of the arena.
     FASTCCD_API MovingMesh(const PositionView& start, const PositionView& end, const IndexView& faces, const IndexView& edges) noexcept;

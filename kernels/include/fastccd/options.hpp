@@ -81,7 +81,8 @@ struct Summary {
                      std::numeric_limits<double>::infinity()};  ///< Smallest toi, ties to the smaller index.
     Isa isa = Isa::automatic;      ///< Kernels that ran.
 
-    /// Adds the totals of another call, whose pairs are counted from `first` on in the whole: for pairs that come in pieces.
+    /// Adds the totals of another call, whose pairs are counted from `first` on in the whole: for pairs of one kind that come in pieces.
+    /// (Of earliest_contact, which counts no contacts, there are none to add.)
     constexpr void add(const Summary& part, std::size_t first = 0) noexcept
     {
         pairs += part.pairs;

@@ -60,7 +60,7 @@ private:
 /// time, otherwise +infinity. At toi the two are apart by less than the minimum separation plus `distance`, to within
 /// rounding, unless the pair reaches the cap on the work (README, Minimum separation and Accuracy). These interfaces have no other
 /// way to name what cannot be answered: throws std::invalid_argument for a minimum separation that is negative or not finite, t_max
-/// outside [0, 1], a distance that is not positive, coordinates that are not finite, and a refusal by the library.
+/// outside [0, 1], a distance that is not positive, coordinates that are not finite, and whatever else the library refuses.
 inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separation, double distance, double t_max, double& toi)
 {
     if (!is_finite(minimum_separation) || minimum_separation < 0.0)
