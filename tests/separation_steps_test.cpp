@@ -6,7 +6,6 @@
 #include <contact_guess.hpp>
 #include <separation_steps.hpp>
 
-#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 
@@ -60,7 +59,7 @@ TEST(SeparationSteps, TimesOnlyAdvance)
     for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
-            generate(family, kind, 121, amount(200), pairs);
+            generate(family, kind, 121, 200, pairs);
             for (const oracle::Pair& pair : pairs)
                 for (const double relative : {1e-9, 1e-3, 0.05}) {
                     double size = 0.0;
