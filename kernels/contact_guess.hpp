@@ -12,7 +12,7 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// With two, a fifth more looks at random pairs; with four, a twentieth less, in the same time.
+/// With two, 22 and 31 % more looks at random vertex-face and edge-edge pairs; with four, 4 and 5 % fewer, at a third more work here.
 inline constexpr int guess_steps = 3;
 
 /// What the steps go by, over the whole of the motion.
@@ -69,6 +69,16 @@ FASTCCD_INLINE void look_at_guess(SeparationRecord<L>& pair, L guess)
     const LaneMask<L> ahead = less_equal(pair.looks, one) & less(pair.time, guess) & less_equal(guess, one);
     pair.purpose = select<L>(ahead, broadcast<L>(looking_ahead), pair.purpose);
     pair.at = select<L>(ahead, guess, pair.at);
+}
+
+/// The guess and all that leads to it. Lanes go through the same step by step, many batches at a time.
+template <PairKind kind, class L>
+FASTCCD_INLINE void guess_contact(SeparationRecord<L>& pair, const SearchParameters& parameters)
+{
+    const ClosingPlanes<L> planes = closing_planes<kind>(pair, parameters);
+    L guess = planes.begin;
+    for (int k = 0; k < guess_steps; ++k) guess = next_guess(planes, guess);
+    look_at_guess(pair, guess);
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

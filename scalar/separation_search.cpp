@@ -95,10 +95,7 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     const ApartOnHalves<double> farther = farther_on_halves<kind>(pair.r, bounds, pair.extents);
     if ((farther.first & farther.second).value) return {.toi = never};
     if (first_look<kind>(pair, farther, parameters).value) return {.toi = never, .intervals = 1};
-    const ClosingPlanes<double> planes = closing_planes<kind>(pair, parameters);
-    double guess = planes.begin;
-    for (int k = 0; k < guess_steps; ++k) guess = next_guess(planes, guess);
-    look_at_guess(pair, guess);
+    guess_contact<kind>(pair, parameters);
     SearchResult result = walk<kind>(pair, parameters, limit);
     if (result.toi <= 1.0) result.toi = parameters.time(result.toi);
     return result;

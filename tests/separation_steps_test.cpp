@@ -1,7 +1,11 @@
 // What the steps of the search with a minimum separation keep, step by step (kernels/separation_steps.hpp).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 #include <contact_guess.hpp>
 #include <separation_steps.hpp>
@@ -31,10 +35,7 @@ void walk(const oracle::Pair& pair, const SearchParameters& parameters, Walk& to
     if (farther.first.value) {
         ASSERT_GE(start, 0.5) << lossless(pair);
     }
-    const ClosingPlanes<double> planes = closing_planes<kind>(record, parameters);
-    double guess = planes.begin;
-    for (int k = 0; k < guess_steps; ++k) guess = next_guess(planes, guess);
-    look_at_guess(record, guess);
+    guess_contact<kind>(record, parameters);
     const bool guessed = record.purpose == looking_ahead;
     totals.guesses += guessed;
     while (record.looks < most_lane_looks) {
