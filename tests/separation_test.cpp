@@ -38,19 +38,7 @@ namespace {
 constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
 constexpr double u = 0x1p-53;
 
-/// Sum of the extents.
-mpq_class exact_size(const oracle::Pair& pair)
-{
-    mpq_class sum;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        mpq_class extent;
-        for (std::size_t i = 0; i < 8; ++i) extent = std::max(extent, mpq_class(abs(mpq_class(pair[i][axis]) - mpq_class(pair[i / 4 * 4][axis]))));
-        sum += extent;
-    }
-    return sum;
-}
-
-double size_of(const oracle::Pair& pair) { return exact_size(pair).get_d(); }
+double size_of(const oracle::Pair& pair) { return oracle::sum_of_extents(pair).get_d(); }
 
 struct Found {
     double toi;
@@ -67,18 +55,6 @@ Found search(oracle::Kind kind, const oracle::Pair& pair, const Options& options
     EXPECT_EQ(summary.at_start, contacts.empty() ? 0u : static_cast<std::size_t>(contacts[0].at_start));
     if (contacts.empty()) return {std::numeric_limits<double>::infinity(), false, false};
     return {contacts[0].toi, contacts[0].proven, contacts[0].at_start};
-}
-
-/// distance - (1 + tolerance) d, in units of s; exact but for the last division.
-double excess(oracle::Kind kind, const oracle::Pair& pair, double time, const Options& options, const mpq_class& size)
-{
-    const mpq_class square = oracle::squared_distance(kind, pair, time);
-    const mpq_class allowed = mpq_class(options.minimum_separation) * (1 + mpq_class(options.distance_tolerance));
-    if (square <= allowed * allowed) return 0.0;
-    // In units of s first: squares of large coordinates have no double.
-    const mpq_class relative = square / (size * size), threshold = allowed / size;
-    const mpf_class root = sqrt(mpf_class(relative, 512)) - mpf_class(threshold, 512);
-    return root.get_d();
 }
 
 std::string in_short(double number)
@@ -103,7 +79,7 @@ constexpr int most_intervals = 5000;  // for the check that nothing is late
 
 void check(oracle::Kind kind, const oracle::Pair& pair, const Options& options, Counts& counts, int intervals = most_intervals)
 {
-    const mpq_class size = exact_size(pair);
+    const mpq_class size = oracle::sum_of_extents(pair);
     const double d = options.minimum_separation;
     const Found found = search(kind, pair, options);
     const auto what = [&] { return std::string(kind_name(kind)) + " d " + in_short(d) + ": " + lossless(pair); };
@@ -125,7 +101,8 @@ void check(oracle::Kind kind, const oracle::Pair& pair, const Options& options, 
         EXPECT_NE(oracle::farther_throughout(kind, pair, d, found.toi, options.t_max), oracle::Farther::certainly) << "not proven: " << what();
     }
     if (sgn(size) == 0) return;
-    const double beyond = excess(kind, pair, found.toi, options, size);
+    const mpq_class allowed = mpq_class(d) * (1 + mpq_class(options.distance_tolerance));
+    const double beyond = oracle::excess_of_distance(kind, pair, found.toi, allowed, size);
     if (beyond > 0x1p8 * u) {
         ++counts.thin;
         counts.worst_thin = std::max(counts.worst_thin, beyond);

@@ -3,6 +3,7 @@
 
 #include "exact_distance.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace fastccd::oracle {
@@ -117,6 +118,27 @@ mpq_class squared_distance(Kind kind, const Pair& pair, double t) {
         result <<= static_cast<mp_bitcnt_t>(-exponent);
     }
     return result;
+}
+
+mpq_class sum_of_extents(const Pair& pair) {
+    mpq_class sum;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        mpq_class extent;
+        for (std::size_t i = 0; i < 8; ++i) {
+            extent = std::max(extent, mpq_class(abs(mpq_class(pair[i][axis]) - mpq_class(pair[i / 4 * 4][axis]))));
+        }
+        sum += extent;
+    }
+    return sum;
+}
+
+double excess_of_distance(Kind kind, const Pair& pair, double t, const mpq_class& allowed, const mpq_class& size) {
+    const mpq_class square = squared_distance(kind, pair, t);
+    if (square <= allowed * allowed) return 0.0;
+    // In units of size first: squares of large coordinates have no double.
+    const mpq_class relative = square / (size * size), threshold = allowed / size;
+    const mpf_class excess = sqrt(mpf_class(relative, 512)) - mpf_class(threshold, 512);
+    return excess.get_d();
 }
 
 }  // namespace fastccd::oracle

@@ -1,9 +1,9 @@
 // fastccd_stress --minutes M --seed S [--family F]
-// fastccd_stress --kind vf|ee [--tolerance T] [--t-max X] --replay "24 numbers"
+// fastccd_stress --kind vf|ee [--tolerance T] [--t-max X] [--min-separation D] [--distance-tolerance T] --replay "24 numbers"
 //
 // New hard pairs without end: every family, combinations of two, at scales that are no powers of two, at many
-// tolerances and lengths of the step, on every instruction set of this machine, against exact truth and against the
-// certified search. A failing pair is printed losslessly, with the arguments that replay it, and once more in the
+// tolerances and lengths of the step, and in some rounds with a minimum separation, on every instruction set of this machine, against
+// exact truth and against the certified search. A failing pair is printed losslessly, with the arguments that replay it, and once more in the
 // simplest form that still fails.
 #include <chrono>
 #include <cmath>
@@ -15,6 +15,7 @@
 
 #include "../generators.hpp"
 #include "../narrow_phase.hpp"
+#include "../oracle/exact_distance.hpp"
 #include "../thin_pairs.hpp"
 #include "stress_case.hpp"
 
@@ -23,7 +24,8 @@ namespace {
 
 constexpr const char* usage =
     "usage: fastccd_stress --minutes M --seed S [--family F]\n"
-    "       fastccd_stress --kind vf|ee [--tolerance T] [--t-max X] --replay \"24 numbers\"\n";
+    "       fastccd_stress --kind vf|ee [--tolerance T] [--t-max X] [--min-separation D] [--distance-tolerance T]\n"
+    "                      --replay \"24 numbers\"\n";
 
 struct Arguments {
     double minutes = 1.0;
@@ -61,6 +63,8 @@ Arguments parse(int argc, char** argv)
         else if (option == "--replay") a.replay = value;
         else if (option == "--tolerance") a.question.tolerance = number(option, value);
         else if (option == "--t-max") a.question.t_max = number(option, value);
+        else if (option == "--min-separation") a.question.minimum_separation = number(option, value);
+        else if (option == "--distance-tolerance") a.question.distance_tolerance = number(option, value);
         else if (option == "--kind" && std::strcmp(value, "vf") == 0) a.question.kind = oracle::Kind::vertex_face;
         else if (option == "--kind" && std::strcmp(value, "ee") == 0) a.question.kind = oracle::Kind::edge_edge;
         else refuse("what is " + option + ' ' + value + '?');
@@ -96,6 +100,7 @@ public:
         make(family, n, pairs);
         if (only_family.empty() && chance(0.15)) combine(n);
         if (chance(0.3)) scale();
+        if (chance(0.2)) keep_apart();
     }
 
     Question question;
@@ -152,6 +157,17 @@ private:
         }
     }
 
+    /// Asks for a minimum separation, in terms of the size of one of the pairs; of fewer pairs, as exact distances take long.
+    void keep_apart()
+    {
+        const double size = oracle::sum_of_extents(pairs[bits_() % pairs.size()]).get_d();
+        const double separation = std::pow(10.0, uniform(-12, 0.3)) * size;
+        if (!(separation > 0.0) || std::isinf(separation)) return;
+        question.minimum_separation = separation;
+        if (chance(0.4)) question.distance_tolerance = chance(0.2) ? 0.0 : std::pow(10.0, uniform(-13, 0));
+        pairs.resize(24);
+    }
+
     std::mt19937_64 bits_;
 };
 
@@ -179,20 +195,21 @@ int run(const Arguments& arguments, const char* program)
         return 0;
     }
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(60 * arguments.minutes);
-    std::uint64_t rounds = 0, asked = 0;
+    std::uint64_t rounds = 0, asked = 0, asked_with_separation = 0;
     do {
         const std::uint64_t seed = arguments.seed + 0x9e3779b97f4a7c15u * rounds++;
         const Round round{arguments.family, seed};
-        asked += round.pairs.size();
+        (round.question.minimum_separation > 0.0 ? asked_with_separation : asked) += round.pairs.size();
         const BatchFault found = first_fault(round.question, round.pairs);
         if (found.pair == round.pairs.size()) continue;
         std::printf("family %s, round %llu of seed %llu\n", round.family.c_str(), static_cast<unsigned long long>(rounds),
                     static_cast<unsigned long long>(arguments.seed));
         return report(round.question, round.pairs[found.pair], found.what, program);
     } while (std::chrono::steady_clock::now() < end);
-    std::printf("seed %llu: %llu pairs in %llu rounds on %zu instruction sets: nothing missed, nothing late, the same bits\n",
+    std::printf("seed %llu: %llu pairs, %llu more with a minimum separation, in %llu rounds on %zu instruction sets: nothing missed, nothing late, "
+                "the same bits\n",
                 static_cast<unsigned long long>(arguments.seed), static_cast<unsigned long long>(asked),
-                static_cast<unsigned long long>(rounds), isas_to_test().size());
+                static_cast<unsigned long long>(asked_with_separation), static_cast<unsigned long long>(rounds), isas_to_test().size());
     return 0;
 }
 

@@ -1,12 +1,17 @@
 #include "stress_case.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
 
+#include <separation_search.hpp>
+
 #include "../narrow_phase.hpp"
 #include "../oracle/exact_ccd.hpp"
+#include "../oracle/exact_distance.hpp"
+#include "../oracle/exact_separation.hpp"
 
 namespace fastccd::testing {
 namespace {
@@ -16,6 +21,8 @@ Options options_of(const Question& question, Isa isa)
     Options options;
     options.tolerance = question.tolerance;
     options.t_max = question.t_max;
+    options.minimum_separation = question.minimum_separation;
+    options.distance_tolerance = question.distance_tolerance;
     options.isa = isa;
     return options;
 }
@@ -27,9 +34,41 @@ Answer reference_answer(const Question& question, const std::vector<oracle::Pair
     return answer(question.kind, interleaved(pairs), options);
 }
 
+/// Intervals after which the oracle does not know whether a pair comes within the separation.
+constexpr int most_intervals = 1000;
+
+oracle::Farther farther_before(const Question& question, const oracle::Pair& pair, double toi)
+{
+    return oracle::farther_throughout(question.kind, pair, question.minimum_separation, 0.0, std::min(toi, question.t_max), 200, most_intervals);
+}
+
+/// At toi, in units of the sum of the extents, beyond (1 + distance_tolerance) d.
+double excess_at(const Question& question, const oracle::Pair& pair, double toi)
+{
+    const mpq_class size = oracle::sum_of_extents(pair), allowed = mpq_class(question.minimum_separation) * (1 + mpq_class(question.distance_tolerance));
+    return sgn(size) == 0 ? 0.0 : oracle::excess_of_distance(question.kind, pair, toi, allowed, size);
+}
+
+unsigned looks_at(const Question& question, const oracle::Pair& pair)
+{
+    const SeparationParameters separation{question.minimum_separation, question.distance_tolerance};
+    return scalar::separation_search(pair_kind(question.kind), pair[0].data(), SearchParameters{question.tolerance, question.t_max, false, separation})
+        .intervals;
+}
+
+std::string against_exact_distances(const Question& question, const oracle::Pair& pair, double toi)
+{
+    if (toi > 0.0 && farther_before(question, pair, toi) == oracle::Farther::closer) return std::isinf(toi) ? "missed" : "late";
+    // Of any pair but those that come to the cap on looks. At time 0 this is that toi is positive where the pair is farther.
+    constexpr double bound = 2.1e-8;
+    if (std::isfinite(toi) && excess_at(question, pair, toi) > bound && looks_at(question, pair) < 4096) return "farther at toi than stated";
+    return {};
+}
+
 std::string against_truth(const Question& question, const oracle::Pair& pair, double toi)
 {
     if (!(toi >= 0.0) || (toi > question.t_max && !std::isinf(toi))) return "toi outside [0, t_max]";
+    if (question.minimum_separation > 0.0) return against_exact_distances(question, pair, toi);
     const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
     if (!verdict.contact) return {};
     return std::isinf(toi) ? "missed" : toi > verdict.t_hi ? "late" : "";
@@ -46,7 +85,7 @@ double complexity(const Question& question, const oracle::Pair& pair)
         for (; mantissa % 2 == 0; mantissa /= 2) --bits;
         return bits + (x == std::floor(x) ? 1 : 2) + std::fabs(exponent) / 16.0 + (x < 0 ? 0.25 : 0);
     };
-    double sum = of(question.t_max) + std::fabs(std::log10(question.tolerance) + 9) / 16;
+    double sum = of(question.t_max) + std::fabs(std::log10(question.tolerance) + 9) / 16 + of(question.minimum_separation) + of(question.distance_tolerance);
     for (const auto& point : pair)
         for (const double x : point) sum += of(x);
     return sum;
@@ -108,6 +147,16 @@ void shrink(Question& question, oracle::Pair& pair)
             q.t_max = t_max;
             progress |= t_max > 0.0 && t_max <= 1.0 && accept(q, pair);
         }
+        for (const double d : {0.0, 1.0, with_bits(question.minimum_separation, 1), with_bits(question.minimum_separation, 8)}) {
+            Question q = question;
+            q.minimum_separation = d;
+            progress |= accept(q, pair);
+        }
+        for (const double distance_tolerance : {1e-6, 0.0}) {
+            Question q = question;
+            q.distance_tolerance = distance_tolerance;
+            progress |= accept(q, pair);
+        }
         // All of an axis at once: to zero, translated to x0, to another binade, rounded.
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const auto all = [&](const std::function<double(double)>& change) {
@@ -134,9 +183,10 @@ void shrink(Question& question, oracle::Pair& pair)
 
 std::string replay_arguments(const Question& question, const oracle::Pair& pair)
 {
-    char text[160];
-    std::snprintf(text, sizeof text, "--kind %s --tolerance %a --t-max %a --replay \"",
-                  question.kind == oracle::Kind::vertex_face ? "vf" : "ee", question.tolerance, question.t_max);
+    char text[240];
+    std::snprintf(text, sizeof text, "--kind %s --tolerance %a --t-max %a --min-separation %a --distance-tolerance %a --replay \"",
+                  question.kind == oracle::Kind::vertex_face ? "vf" : "ee", question.tolerance, question.t_max, question.minimum_separation,
+                  question.distance_tolerance);
     std::string pair_text = lossless(pair);
     pair_text.pop_back();
     return text + pair_text + '"';
@@ -144,12 +194,20 @@ std::string replay_arguments(const Question& question, const oracle::Pair& pair)
 
 std::string describe(const Question& question, const oracle::Pair& pair)
 {
-    const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
-    char line[200];
-    std::snprintf(line, sizeof line, "truth: %s, first at [%.17g, %.17g], %d roots\n", verdict.contact ? "contact" : "no contact",
-                  verdict.t_lo, verdict.t_hi, verdict.roots);
-    std::string text = line;
     const std::vector<oracle::Pair> pairs{pair};
+    char line[200];
+    if (question.minimum_separation > 0.0) {
+        const double toi = reference_answer(question, pairs).toi[0];
+        const oracle::Farther farther = farther_before(question, pair, toi);
+        std::snprintf(line, sizeof line, "before toi: %s the separation; at toi %.3g of its size beyond; %u looks\n",
+                      farther == oracle::Farther::certainly ? "farther than" : farther == oracle::Farther::closer ? "within" : "not known whether within",
+                      std::isfinite(toi) ? excess_at(question, pair, toi) : 0.0, looks_at(question, pair));
+    } else {
+        const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
+        std::snprintf(line, sizeof line, "truth: %s, first at [%.17g, %.17g], %d roots\n", verdict.contact ? "contact" : "no contact",
+                      verdict.t_lo, verdict.t_hi, verdict.roots);
+    }
+    std::string text = line;
     const auto add = [&](const char* what, const Answer& found) {
         std::snprintf(line, sizeof line, "%-16s toi %.17g, %d roots\n", what, found.toi[0], found.roots[0]);
         text += line;

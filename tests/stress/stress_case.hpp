@@ -12,10 +12,13 @@ struct Question {
     oracle::Kind kind = oracle::Kind::vertex_face;
     double tolerance = 1e-9;
     double t_max = 1.0;
+    double minimum_separation = 0.0;
+    double distance_tolerance = 1e-6;
 };
 
 /// What is wrong with the answers for one pair, asked alone and in every lane of a batch: missed or late against the
-/// oracle, outside [0, t_max], or other bits than the certified search. Empty if nothing is.
+/// oracle, outside [0, t_max], or other bits than the certified search; and with a minimum separation, farther apart at toi
+/// than README.md says. Empty if nothing is.
 std::string fault(const Question& question, const oracle::Pair& pair);
 
 /// The same for many pairs at once: the index of the first pair at fault, and what is wrong. Index = size: nothing.
