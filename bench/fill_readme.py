@@ -9,9 +9,15 @@ speed: results/*.json, records of tools/bench.sh
 import json
 import pathlib
 import re
+import textwrap
 
 results = pathlib.Path(__file__).parent / "results"
 readme = pathlib.Path(__file__).parent.parent / "README.md"
+
+
+def wrapped(line):
+    """Prose in lines of the README's width."""
+    return textwrap.fill(line, 120, break_long_words=False, break_on_hyphens=False)
 
 
 def report_table():
@@ -36,12 +42,12 @@ def report_table():
     peers = "; ".join(f"{peer['name']}: {peer['missed']:,} missed, "
                       + (f"{peer['late']:,} late, " if peer["signed_error"] else "no time, ") + f"{peer['false_alarms']:,} false alarms"
                       for peer in part["vf"]["peers"])
-    lines += ["", f"Random vertex-face pairs (the paper's test), one thread, processor time, median of {repeats}; {machine['processor']}, {machine['compiler']}, "
+    lines += ["", wrapped(f"Random vertex-face pairs (the paper's test), one thread, processor time, median of {repeats}; {machine['processor']}, {machine['compiler']}, "
               f"commit {machine['commit']}, load average {machine['load_average']:.1f}. Errors of the time of impact in units of the step, judged by exact truth on the first "
               f"{part['truth_pairs']:,} pairs ({points[1e-9, isas[0]]['contacts']:,} contacts)."
               + (f" Other libraries on the same pairs: {peers}." if peers else "")
               + f" Hard cases, {hard:,} pairs in {len(sets)} sets: {wrong['missed']} missed, {wrong['late']} late, {wrong['false_alarms']:,} false alarms, "
-              f"with `--exact` {sum(s['exact']['false_alarms'] for s in sets if s['exact'])}."]
+              f"with `--exact` {sum(s['exact']['false_alarms'] for s in sets if s['exact'])}.")]
     return "\n".join(lines)
 
 
@@ -107,8 +113,8 @@ def speed_table(record):
         contacts[key] = int(b["contacts"])
     isas = [isa for isa in ("avx2", "avx512", "neon") if any(isa in rate for rate in rates.values())]
     context = record["context"]
-    lines = [f"One thread, E_tol 1e-9, million pairs per second; {context['cpu']}, {context['num_cpus']} processors, "
-             f"commit {context['commit']}. Last column but one: the share of the streaming limit that {isas[-1]} reaches.", "",
+    lines = [wrapped(f"One thread, E_tol 1e-9, million pairs per second; {context['cpu']}, {context['num_cpus']} processors, "
+             f"commit {context['commit']}. Last column but one: the share of the streaming limit that {isas[-1]} reaches."), "",
              "| kind | data | layout | " + " | ".join(isas) + " | of the limit | contacts |",
              "|---|---|---|" + "---|" * len(isas) + "---|---|"]
     for key, rate in rates.items():
