@@ -2,9 +2,9 @@
 // fastccd_stress --kind vf|ee [--tolerance T] [--t-max X] [--min-separation D] [--distance-tolerance T] --replay "24 numbers"
 //
 // New hard pairs without end: every family, combinations of two, at scales that are no powers of two, at many
-// tolerances and lengths of the step, and in some rounds with a minimum separation, on every instruction set of this machine, against
-// exact truth and against the certified search. A failing pair is printed losslessly, with the arguments that replay it, and once more in the
-// simplest form that still fails.
+// tolerances and lengths of the step, and in some rounds with a minimum separation, on every instruction set of this
+// machine, against exact truth and against the certified search. A failing pair is printed losslessly, with the arguments
+// that replay it, and once more in the simplest form that still fails.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -206,8 +206,8 @@ int run(const Arguments& arguments, const char* program)
                     static_cast<unsigned long long>(arguments.seed));
         return report(round.question, round.pairs[found.pair], found.what, program);
     } while (std::chrono::steady_clock::now() < end);
-    std::printf("seed %llu: %llu pairs, %llu more with a minimum separation, in %llu rounds on %zu instruction sets: nothing missed, nothing late, "
-                "the same bits\n",
+    std::printf("seed %llu: %llu pairs, %llu more with a minimum separation, in %llu rounds on %zu instruction sets: nothing missed, "
+                "nothing late, the same bits\n",
                 static_cast<unsigned long long>(arguments.seed), static_cast<unsigned long long>(asked),
                 static_cast<unsigned long long>(asked_with_separation), static_cast<unsigned long long>(rounds), isas_to_test().size());
     return 0;

@@ -39,21 +39,23 @@ constexpr int most_intervals = 1000;
 
 oracle::Farther farther_before(const Question& question, const oracle::Pair& pair, double toi)
 {
-    return oracle::farther_throughout(question.kind, pair, question.minimum_separation, 0.0, std::min(toi, question.t_max), 200, most_intervals);
+    const double until = std::min(toi, question.t_max);
+    return oracle::farther_throughout(question.kind, pair, question.minimum_separation, 0.0, until, 200, most_intervals);
 }
 
 /// At toi, in units of the sum of the extents, beyond (1 + distance_tolerance) d.
 double excess_at(const Question& question, const oracle::Pair& pair, double toi)
 {
-    const mpq_class size = oracle::sum_of_extents(pair), allowed = mpq_class(question.minimum_separation) * (1 + mpq_class(question.distance_tolerance));
+    const mpq_class size = oracle::sum_of_extents(pair);
+    const mpq_class allowed = mpq_class(question.minimum_separation) * (1 + mpq_class(question.distance_tolerance));
     return sgn(size) == 0 ? 0.0 : oracle::excess_of_distance(question.kind, pair, toi, allowed, size);
 }
 
 unsigned looks_at(const Question& question, const oracle::Pair& pair)
 {
     const SeparationParameters separation{question.minimum_separation, question.distance_tolerance};
-    return scalar::separation_search(pair_kind(question.kind), pair[0].data(), SearchParameters{question.tolerance, question.t_max, false, separation})
-        .intervals;
+    const SearchParameters parameters{question.tolerance, question.t_max, false, separation};
+    return scalar::separation_search(pair_kind(question.kind), pair[0].data(), parameters).intervals;
 }
 
 std::string against_exact_distances(const Question& question, const oracle::Pair& pair, double toi)
@@ -85,7 +87,8 @@ double complexity(const Question& question, const oracle::Pair& pair)
         for (; mantissa % 2 == 0; mantissa /= 2) --bits;
         return bits + (x == std::floor(x) ? 1 : 2) + std::fabs(exponent) / 16.0 + (x < 0 ? 0.25 : 0);
     };
-    double sum = of(question.t_max) + std::fabs(std::log10(question.tolerance) + 9) / 16 + of(question.minimum_separation) + of(question.distance_tolerance);
+    double sum = of(question.t_max) + std::fabs(std::log10(question.tolerance) + 9) / 16;
+    sum += of(question.minimum_separation) + of(question.distance_tolerance);
     for (const auto& point : pair)
         for (const double x : point) sum += of(x);
     return sum;
@@ -199,8 +202,10 @@ std::string describe(const Question& question, const oracle::Pair& pair)
     if (question.minimum_separation > 0.0) {
         const double toi = reference_answer(question, pairs).toi[0];
         const oracle::Farther farther = farther_before(question, pair, toi);
-        std::snprintf(line, sizeof line, "before toi: %s the separation; at toi %.3g of its size beyond; %u looks\n",
-                      farther == oracle::Farther::certainly ? "farther than" : farther == oracle::Farther::closer ? "within" : "not known whether within",
+        const char* const before = farther == oracle::Farther::certainly ? "farther than"
+                                   : farther == oracle::Farther::closer  ? "within"
+                                                                         : "not known whether within";
+        std::snprintf(line, sizeof line, "before toi: %s the separation; at toi %.3g of its size beyond; %u looks\n", before,
                       std::isfinite(toi) ? excess_at(question, pair, toi) : 0.0, looks_at(question, pair));
     } else {
         const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
