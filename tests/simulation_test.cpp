@@ -1,6 +1,6 @@
-// What it is all for: two cloths are thrown at one another and crumpled, by steps that collision_free_step allows, and never tear. After
-// each step, exactly, no edge passes through a face; and with a minimum separation all stays that far apart. Without that limit the
-// same motion tears them.
+// What it is all for: two cloths are thrown at one another and crumpled, by nearly all of the steps that collision_free_step
+// allows, and never tear. After each step, exactly, no edge passes through a face; and with a minimum separation all is that
+// far apart. Whole frames of the same motion tear them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -91,21 +91,23 @@ public:
         }
     }
 
-    /// Moves all by what is left of a frame, or by half of the step that is free of collision; then what stopped it bounces.
-    /// Returns how much of the frame that was.
+    /// Moves all by what is left of a frame, or by the step that is free of collision but for a millionth; then what stopped it bounces.
+    /// Returns how much of the frame that was, 0 after an error.
     double advance(double left, const Options& options)
     {
         std::vector<Point> end = moved(left);
         const MovingMesh mesh{PositionView::rows(position_[0].data(), position_.size()), PositionView::rows(end[0].data(), end.size()),
                               IndexView::rows(faces_[0].data(), faces_.size(), 3), IndexView::rows(edges_[0].data(), edges_.size(), 2)};
         CollisionFreeStep free;
-        EXPECT_TRUE(collision_free_step(mesh, vertex_face_, edge_edge_, options, free).ok());
+        const Status status = collision_free_step(mesh, vertex_face_, edge_edge_, options, free);
+        EXPECT_TRUE(status.ok()) << message(status.error);
+        if (!status.ok()) return 0.0;
         if (!free.limited()) {
             position_ = std::move(end);
             return left;
         }
         EXPECT_GT(free.step, 0.0) << "nothing was in contact before";
-        const double done = 0.5 * free.step * left;
+        const double done = (1.0 - 1e-6) * free.step * left;
         position_ = moved(done);
         Point mean{};
         const std::array<int, 4> stopped = vertices_of(free);
@@ -191,30 +193,31 @@ void run(std::uint64_t seed, double separation)
     constexpr double duration = 0.5;
     Options options;
     options.minimum_separation = separation;
-    Cloths cloths{seed}, free{seed};
+    constexpr double rounding_of_positions = 1e-14;
+    Cloths cloths{seed};
     std::size_t stops = 0, torn = 0;
     double done = 0.0;
     for (std::size_t frame = 0; frame < frames; ++frame) {
         cloths.throw_again();
+        Cloths unlimited = cloths;
+        unlimited.advance_freely(duration);
+        torn += unlimited.tears();
         double left = duration;
         for (std::size_t step = 0; left > 0.0 && step < most_steps; ++step) {
             left -= cloths.advance(left, options);
             stops += left > 0.0;
             ASSERT_EQ(cloths.tears(), 0u) << "seed " << seed << ", frame " << frame;
+            if (separation > 0.0) {
+                ASSERT_EQ(cloths.within(separation - rounding_of_positions), 0u) << "seed " << seed << ", frame " << frame;
+            }
         }
         done += 1.0 - left / duration;
-        if (separation > 0.0) {
-            constexpr double rounding_of_positions = 1e-14;
-            ASSERT_EQ(cloths.within(separation - rounding_of_positions), 0u) << "seed " << seed << ", frame " << frame;
-        }
-        free.throw_again();
-        free.advance_freely(duration);
-        torn += free.tears();
     }
-    std::printf("separation %g: %.3g of %zu frames done, %zu stops, nothing torn; without them %zu edges pass through faces\n", separation, done,
+    std::printf("separation %g: %.3g of %zu frames done, %zu stops, nothing torn; by whole frames %zu edges pass through faces\n", separation, done,
                 frames, stops, torn);
     EXPECT_GT(stops, 10 * frames);
-    EXPECT_GT(torn, 100 * frames);
+    EXPECT_GT(done, 0.15 * static_cast<double>(frames));
+    EXPECT_GT(torn, 50 * frames);
 }
 
 TEST(Simulation, ClothsDoNotTear)

@@ -35,7 +35,7 @@ ShortestVector shortest_vector(Kind kind, const IntegerPoints& points);
 /// Exact squared distance between the two closed primitives at time t; all coordinates and t finite.
 mpq_class squared_distance(Kind kind, const Pair& pair, double t);
 
-/// Over the axes, of the largest |component| of x_i - x_0 at both ends of the step: the size that rounding goes by.
+/// The sum over the axes of the largest |component| of x_i - x_0 at both ends of the step: the size that rounding goes by.
 mpq_class sum_of_extents(const Pair& pair);
 
 /// By how much the distance at time t exceeds `allowed` >= 0, in units of `size` > 0; 0 if it does not. Exact but for the last root and division.

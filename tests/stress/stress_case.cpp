@@ -39,15 +39,16 @@ constexpr int most_intervals = 1000;
 
 oracle::Farther farther_before(const Question& question, const oracle::Pair& pair, double toi)
 {
-    const double until = std::min(toi, question.t_max);
+    const double until = toi >= 0.0 ? std::min(toi, question.t_max) : question.t_max;
     return oracle::farther_throughout(question.kind, pair, question.minimum_separation, 0.0, until, 200, most_intervals);
 }
 
-/// At toi, in units of the sum of the extents, beyond (1 + distance_tolerance) d.
+/// At toi, in units of the sum of the extents, beyond (1 + distance_tolerance) d, or at the start beyond d.
 double excess_at(const Question& question, const oracle::Pair& pair, double toi)
 {
     const mpq_class size = oracle::sum_of_extents(pair);
-    const mpq_class allowed = mpq_class(question.minimum_separation) * (1 + mpq_class(question.distance_tolerance));
+    mpq_class allowed = question.minimum_separation;
+    if (toi > 0.0) allowed *= 1 + mpq_class(question.distance_tolerance);
     return sgn(size) == 0 ? 0.0 : oracle::excess_of_distance(question.kind, pair, toi, allowed, size);
 }
 
@@ -58,19 +59,23 @@ unsigned looks_at(const Question& question, const oracle::Pair& pair)
     return scalar::separation_search(pair_kind(question.kind), pair[0].data(), parameters).intervals;
 }
 
-std::string against_exact_distances(const Question& question, const oracle::Pair& pair, double toi)
+std::string against_exact_distances(const Question& question, const oracle::Pair& pair, double toi, std::size_t& undecided)
 {
-    if (toi > 0.0 && farther_before(question, pair, toi) == oracle::Farther::closer) return std::isinf(toi) ? "missed" : "late";
+    if (toi > 0.0) {
+        const oracle::Farther farther = farther_before(question, pair, toi);
+        if (farther == oracle::Farther::closer) return std::isinf(toi) ? "missed" : "late";
+        undecided += farther == oracle::Farther::not_shown;
+    }
     // Of any pair but those that come to the cap on looks. At time 0 this is that toi is positive where the pair is farther.
-    constexpr double bound = 2.1e-8;
+    const double bound = 2.0 * std::sqrt(0x1p-53);
     if (std::isfinite(toi) && excess_at(question, pair, toi) > bound && looks_at(question, pair) < 4096) return "farther at toi than stated";
     return {};
 }
 
-std::string against_truth(const Question& question, const oracle::Pair& pair, double toi)
+std::string against_truth(const Question& question, const oracle::Pair& pair, double toi, std::size_t& undecided)
 {
     if (!(toi >= 0.0) || (toi > question.t_max && !std::isinf(toi))) return "toi outside [0, t_max]";
-    if (question.minimum_separation > 0.0) return against_exact_distances(question, pair, toi);
+    if (question.minimum_separation > 0.0) return against_exact_distances(question, pair, toi, undecided);
     const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
     if (!verdict.contact) return {};
     return std::isinf(toi) ? "missed" : toi > verdict.t_hi ? "late" : "";
@@ -106,15 +111,16 @@ double with_bits(double x, int bits)
 BatchFault first_fault(const Question& question, const std::vector<oracle::Pair>& pairs)
 {
     const Answer expected = reference_answer(question, pairs);
+    std::size_t undecided = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i)
-        if (std::string what = against_truth(question, pairs[i], expected.toi[i]); !what.empty())
-            return {i, "certified search: " + what};
+        if (std::string what = against_truth(question, pairs[i], expected.toi[i], undecided); !what.empty())
+            return {i, "certified search: " + what, undecided};
     for (const Isa isa : isas_to_test()) {
         const Answer found = answer(question.kind, interleaved(pairs), options_of(question, isa));
         if (const std::size_t i = first_difference(expected, found); i != pairs.size())
-            return {i, std::string(name(isa)) + ": other bits than the certified search"};
+            return {i, std::string(name(isa)) + ": other bits than the certified search", undecided};
     }
-    return {pairs.size(), {}};
+    return {pairs.size(), {}, undecided};
 }
 
 std::string fault(const Question& question, const oracle::Pair& pair)
@@ -205,8 +211,12 @@ std::string describe(const Question& question, const oracle::Pair& pair)
         const char* const before = farther == oracle::Farther::certainly ? "farther than"
                                    : farther == oracle::Farther::closer  ? "within"
                                                                          : "not known whether within";
-        std::snprintf(line, sizeof line, "before toi: %s the separation; at toi %.3g of its size beyond; %u looks\n", before,
-                      std::isfinite(toi) ? excess_at(question, pair, toi) : 0.0, looks_at(question, pair));
+        char at_toi[64] = "";
+        if (std::isfinite(toi)) std::snprintf(at_toi, sizeof at_toi, "; at toi %.3g of its size beyond", excess_at(question, pair, toi));
+        if (toi == 0.0)
+            std::snprintf(line, sizeof line, "at the start%s\n", at_toi);
+        else
+            std::snprintf(line, sizeof line, "before toi: %s the separation%s; %u looks\n", before, at_toi, looks_at(question, pair));
     } else {
         const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
         std::snprintf(line, sizeof line, "truth: %s, first at [%.17g, %.17g], %d roots\n", verdict.contact ? "contact" : "no contact",

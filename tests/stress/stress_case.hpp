@@ -18,13 +18,14 @@ struct Question {
 
 /// What is wrong with the answers for one pair, asked alone and in every lane of a batch: missed or late against the
 /// oracle, outside [0, t_max], or other bits than the certified search; and with a minimum separation, farther apart at toi
-/// than README.md says. Empty if nothing is.
+/// than README.md says of any pair. Empty if nothing is.
 std::string fault(const Question& question, const oracle::Pair& pair);
 
 /// The same for many pairs at once: the index of the first pair at fault, and what is wrong. Index = size: nothing.
 struct BatchFault {
     std::size_t pair;
     std::string what;
+    std::size_t undecided = 0;  ///< Pairs before it of which the oracle could not tell whether they come within the separation.
 };
 BatchFault first_fault(const Question& question, const std::vector<oracle::Pair>& pairs);
 
