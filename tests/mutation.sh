@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Does a test fail when a proof is weakened? For each mutant below, in a copy of the tree: sets a rounding error bound to
 # zero, or loosens a comparison, builds, and runs the tests named until one fails. Prints mutant -> killed by. Exit 1 if
-# a mutant survives. Takes a minute or two for each of some 230, six hours for all, on one core.
+# a mutant survives. Takes a minute or two for each of some 230 on one core, hours for all.
 #
 #   tests/mutation.sh [PATTERN]      only mutants whose name matches the extended regular expression
 set -euo pipefail

@@ -193,6 +193,7 @@ void run(std::uint64_t seed, double separation)
     constexpr double duration = 0.5;
     Options options;
     options.minimum_separation = separation;
+    // After a step, coordinates below 4 are rounded by 2^-52 at most, and the products added to them by less: some 1e-15 of any distance.
     constexpr double rounding_of_positions = 1e-14;
     Cloths cloths{seed};
     std::size_t stops = 0, torn = 0;
@@ -216,7 +217,7 @@ void run(std::uint64_t seed, double separation)
     std::printf("separation %g: %.3g of %zu frames done, %zu stops, nothing torn; by whole frames %zu edges pass through faces\n", separation, done,
                 frames, stops, torn);
     EXPECT_GT(stops, 10 * frames);
-    EXPECT_GT(done, 0.15 * static_cast<double>(frames));
+    EXPECT_GT(done, 0.15 * static_cast<double>(frames)) << "a step of nearly nothing is free of collision, too";
     EXPECT_GT(torn, 50 * frames);
 }
 

@@ -160,10 +160,11 @@ private:
     /// Asks for a minimum separation, in terms of the size of one of the pairs; of fewer pairs, as exact distances take long.
     void keep_apart()
     {
-        pairs.resize(24);
-        const double size = oracle::sum_of_extents(pairs[bits_() % pairs.size()]).get_d();
+        constexpr std::size_t fewer = 24;
+        const double size = oracle::sum_of_extents(pairs[bits_() % fewer]).get_d();
         const double separation = std::pow(10.0, uniform(-12, 0.3)) * size;
         if (!(separation > 0.0) || std::isinf(separation)) return;
+        pairs.resize(fewer);
         question.minimum_separation = separation;
         if (chance(0.4)) question.distance_tolerance = chance(0.2) ? 0.0 : std::pow(10.0, uniform(-13, 0));
     }
