@@ -35,11 +35,11 @@ __attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r,
 {
     const RelativeMotion<L> normalized = with_normalized_extents(r);
     const Extents<L> e = extents(normalized);
-    const Sight<L> sight = look<kind>(normalized, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
-    const LaneMask<L> proven = certified_at(sight.reach, s);
+    const LookResult<L> seen = look<kind>(normalized, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
+    const LaneMask<L> proven = certified_at(seen.reach, s);
     if (Lane<L>::bits(proven) == 0) return !proven;
     const L close = broadcast<L>(share_of_resolution * SeparationParameters::resolution) * sum(e);
-    const L distance = sqrt(square_distance<kind>(sight.at.r, sight.separation));
+    const L distance = sqrt(square_distance<kind>(seen.at.r, seen.separation));
     return !(proven & (less_equal(s, broadcast<L>(0.0)) | less(close, distance)));
 }
 

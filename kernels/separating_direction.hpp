@@ -48,8 +48,8 @@ FASTCCD_INLINE Vector3<L> perpendicular_where(LaneMask<L> m, const Vector3<L>& v
 
 template <class L>
 struct ShortestVector {
-    Vector3<L> upright;  ///< Perpendicular to the side it ends on, where it ends inside one.
-    L square;            ///< Square of its length before that: of a vector between two points of the primitives.
+    Vector3<L> side_normal;  ///< Perpendicular to the side it ends on, where it ends inside one.
+    L square;                ///< Square of its length before that: of a vector between two points of the primitives.
 };
 
 /// From the origin to the nearest of the sides of the triangle r1 r2 r3.
@@ -153,13 +153,13 @@ FASTCCD_INLINE Separation<L> separation(const Vector3<L> (&r)[3])
         normal = cross(r[0], second);
     }
     const Gaps<L> of_normal = gaps<kind>(normal, r);
-    const L gap = max(gaps<kind>(shortest.upright, r).along, zero);
+    const L gap = max(gaps<kind>(shortest.side_normal, r).along, zero);
     const L normal_gap = max(max(of_normal.along, of_normal.against), zero);
-    const L normal_square = dot(normal, normal), square = dot(shortest.upright, shortest.upright);
+    const L normal_square = dot(normal, normal), square = dot(shortest.side_normal, shortest.side_normal);
     // normal_gap / |normal| > gap / |q|, squared and multiplied out
     const LaneMask<L> along_normal = less(broadcast<L>(smallest_square), normal_square) &
                                      less((gap * gap) * normal_square, (normal_gap * normal_gap) * square);
-    const Vector3<L> v = select(along_normal, normal, shortest.upright);
+    const Vector3<L> v = select(along_normal, normal, shortest.side_normal);
     const L v_square = select<L>(along_normal, normal_square, square);
     const L sign = select<L>(along_normal & less(of_normal.along, of_normal.against), zero - one, one);
     const L inverse = select<L>(less(broadcast<L>(smallest_square), v_square), sign / sqrt(v_square), zero);

@@ -118,22 +118,22 @@ FASTCCD_INLINE Positions<L> positions(const RelativeMotion<L>& r, L time)
 
 /// What is seen of a pair at one time.
 template <class L>
-struct Sight {
+struct LookResult {
     Positions<L> at;
     Separation<L> separation;
     Reach<L> reach;
 };
 
 template <PairKind kind, class L>
-FASTCCD_INLINE Sight<L> look(const RelativeMotion<L>& r, const Extents<L>& e, L time, const SeparationParameters& parameters,
-                             const SeparationBounds& bounds)
+FASTCCD_INLINE LookResult<L> look(const RelativeMotion<L>& r, const Extents<L>& e, L time, const SeparationParameters& parameters,
+                                  const SeparationBounds& bounds)
 {
-    Sight<L> sight;
-    sight.at = positions(r, time);
-    sight.separation = separation<kind>(sight.at.r);
-    const Vector3<L>& n = sight.separation.n;
-    sight.reach = reach<kind>(r, n, threshold_along(n, e, parameters, bounds.height(kind)));
-    return sight;
+    LookResult<L> seen;
+    seen.at = positions(r, time);
+    seen.separation = separation<kind>(seen.at.r);
+    const Vector3<L>& n = seen.separation.n;
+    seen.reach = reach<kind>(r, n, threshold_along(n, e, parameters, bounds.height(kind)));
+    return seen;
 }
 
 /// The vector that turns evenly from the unit vector n, where the positions are a, to m where they are b, proves a distance above d in

@@ -295,7 +295,7 @@ private:
         // unscaled if those of the searched part are, as lanes take none that are too large.
         if ((undecided & crossing) != 0) {
             const LaneMask<L> apart = area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters_.bounds);
-            undecided &= ~(crossing & Lane<L>::bits(apart & is_unscaled(root.r, root.r)));
+            undecided &= ~(crossing & Lane<L>::bits(apart & is_surely_unscaled(root.r, root.r)));
         }
         if (contact != 0) record_contacts(root.pair, leaf.left, contact);
         if (undecided != 0) look_again(root, undecided);

@@ -19,16 +19,12 @@ FASTCCD_INLINE void set_bounds(PolynomialsOf<L>& part, const PolynomialsOf<L>& w
 {
     const L factor = broadcast<L>(times);
     part.cubic_bound = whole.cubic_bound + factor * value_margin(cubic_of(whole));
-    for (int axis = 0; axis < 3; ++axis) {
-        for (int edge = 0; edge < edge_function_count(kind); ++edge) {
-            const auto& e = whole.edges[axis][edge];
-            part.edges[axis][edge].bound = e.bound + factor * value_margin(quadratic_of(e));
-        }
-        for (int k = 0; k < gap_count(kind); ++k) {
-            const auto& gap = whole.gaps[axis][k];
-            part.gaps[axis][k].bound = gap.bound + factor * value_margin(linear_of(gap));
-        }
-    }
+    const auto set = [&](auto& of_part, const auto& of_whole, const auto& coefficients) FASTCCD_INLINE_LAMBDA {
+        of_part.bound = of_whole.bound + factor * value_margin(coefficients);
+    };
+    for_each_edge_and_gap<kind>(
+        part, whole, [&](auto& edge, const auto& of_whole) FASTCCD_INLINE_LAMBDA { set(edge, of_whole, quadratic_of(of_whole)); },
+        [&](auto& gap, const auto& of_whole) FASTCCD_INLINE_LAMBDA { set(gap, of_whole, linear_of(of_whole)); });
 }
 
 template <PairKind kind, class L>
@@ -146,7 +142,7 @@ FASTCCD_INLINE SearchedPairs<L> searched_pairs(const double* coordinates, unsign
         }, t_max);
     };
     const RelativeMotion<L> r = motion(0, parameters.t_max);
-    const LaneMask<L> unscaled = is_unscaled(motion(0, 1.0), r);
+    const LaneMask<L> unscaled = is_surely_unscaled(motion(0, 1.0), r);
     SearchedPairs<L> searched;
     LaneMask<L> apart;
     if constexpr (kind == PairKind::edge_edge)

@@ -10,7 +10,7 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 inline constexpr double smallest_surely_unscaled = 0x1p-90, largest_surely_unscaled = 0x1p90;
 
 template <class L>
-FASTCCD_INLINE LaneMask<L> is_unscaled(const RelativeMotion<L>& step, const RelativeMotion<L>& searched)
+FASTCCD_INLINE LaneMask<L> is_surely_unscaled(const RelativeMotion<L>& step, const RelativeMotion<L>& searched)
 {
     const Extents<L> s = extents(step), e = extents(searched);
     const L smallest = broadcast<L>(smallest_surely_unscaled), largest = broadcast<L>(largest_surely_unscaled);

@@ -204,20 +204,20 @@ void expect_certificates_hold(std::uint64_t seed)
         const double d = share * distance_at(in.a);
         if (!(d > 0)) continue;
         const SeparationParameters wanted{d, 1e-6};
-        const auto sight = portable::look<kind>(c.r, extents, in.a, wanted, bounds);
-        const double low = std::max(sight.reach.low, 0.0), high = std::min(sight.reach.high, 1.0);
+        const auto seen = portable::look<kind>(c.r, extents, in.a, wanted, bounds);
+        const double low = std::max(seen.reach.low, 0.0), high = std::min(seen.reach.high, 1.0);
         if (low < high) {
             for (const double s : {low, high, low + 0.5 * (high - low)})
-                ASSERT_TRUE(proves<kind>(in, sight.separation.n, d, s)) << s << ' ' << d << ' ' << text(in);
+                ASSERT_TRUE(proves<kind>(in, seen.separation.n, d, s)) << s << ' ' << d << ' ' << text(in);
             (low == 0.0 && high == 1.0 ? whole : ends) += 1;
         }
         const auto other = portable::look<kind>(c.r, extents, in.b, wanted, bounds);
-        if (in.a < in.b && portable::farther_while_turning<kind>(sight.at.r, other.at.r, extents, sight.separation.n, other.separation.n, wanted, bounds).value) {
+        if (in.a < in.b && portable::farther_while_turning<kind>(seen.at.r, other.at.r, extents, seen.separation.n, other.separation.n, wanted, bounds).value) {
             ++turning;
-            ASSERT_TRUE(proves<kind>(in, sight.separation.n, d, in.a) && proves<kind>(in, other.separation.n, d, in.b)) << d << ' ' << text(in);
+            ASSERT_TRUE(proves<kind>(in, seen.separation.n, d, in.a) && proves<kind>(in, other.separation.n, d, in.b)) << d << ' ' << text(in);
             // In between n is computed here with rounding, which at distances this far above d does not matter.
             for (const double w : {0.25, 0.5, 0.75}) {
-                const auto mixed = portable::add(portable::scaled(sight.separation.n, 1.0 - w), portable::scaled(other.separation.n, w));
+                const auto mixed = portable::add(portable::scaled(seen.separation.n, 1.0 - w), portable::scaled(other.separation.n, w));
                 const bool holds = proves<kind>(in, mixed, 0.999 * d, in.a + w * (in.b - in.a));
                 ASSERT_TRUE(holds) << w << ' ' << d << ' ' << text(in);
             }

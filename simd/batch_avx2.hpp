@@ -1,0 +1,110 @@
+// Batches of four doubles or eight floats, in AVX2; its comparison of boxes is also that of AVX-512.
+#pragma once
+
+#include <batch_traits.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Row m moves the doubles whose bit is set in m to the front (as pairs of 32-bit lanes).
+alignas(32) inline constexpr int compress_permutation[16][8] = {
+    {0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7}, {2, 3, 0, 1, 4, 5, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7},
+    {4, 5, 0, 1, 2, 3, 6, 7}, {0, 1, 4, 5, 2, 3, 6, 7}, {2, 3, 4, 5, 0, 1, 6, 7}, {0, 1, 2, 3, 4, 5, 6, 7},
+    {6, 7, 0, 1, 2, 3, 4, 5}, {0, 1, 6, 7, 2, 3, 4, 5}, {2, 3, 6, 7, 0, 1, 4, 5}, {0, 1, 2, 3, 6, 7, 4, 5},
+    {4, 5, 6, 7, 0, 1, 2, 3}, {0, 1, 4, 5, 6, 7, 2, 3}, {2, 3, 4, 5, 6, 7, 0, 1}, {0, 1, 2, 3, 4, 5, 6, 7}};
+
+FASTCCD_INLINE void transpose_four_records(const double* const* records, double* start, double* end, std::size_t stride)
+{
+    const __m256d a = _mm256_loadu_pd(records[0]), b = _mm256_loadu_pd(records[1]);
+    const __m256d c = _mm256_loadu_pd(records[2]), d = _mm256_loadu_pd(records[3]);
+    const __m256d ab_xz = _mm256_unpacklo_pd(a, b), ab_yx = _mm256_unpackhi_pd(a, b);
+    const __m256d cd_xz = _mm256_unpacklo_pd(c, d), cd_yx = _mm256_unpackhi_pd(c, d);
+    _mm256_storeu_pd(start, _mm256_permute2f128_pd(ab_xz, cd_xz, 0x20));
+    _mm256_storeu_pd(start + stride, _mm256_permute2f128_pd(ab_yx, cd_yx, 0x20));
+    _mm256_storeu_pd(start + 2 * stride, _mm256_permute2f128_pd(ab_xz, cd_xz, 0x31));
+    _mm256_storeu_pd(end, _mm256_permute2f128_pd(ab_yx, cd_yx, 0x31));
+    // y' z' of the first and third record, and of the second and fourth.
+    const __m256d ac = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[0] + 4)), _mm_loadu_pd(records[2] + 4), 1);
+    const __m256d bd = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[1] + 4)), _mm_loadu_pd(records[3] + 4), 1);
+    _mm256_storeu_pd(end + stride, _mm256_unpacklo_pd(ac, bd));
+    _mm256_storeu_pd(end + 2 * stride, _mm256_unpackhi_pd(ac, bd));
+}
+
+/// Boxes of the grid in registers of 256 bits, for AVX2 and AVX-512.
+struct WideBoxes {
+    using FirstBox = __m256i;
+    static FASTCCD_INLINE __m256i first_box(const GridBox& box, const std::int16_t* separation)
+    {
+        const __m256i k = _mm256_broadcastsi128_si256(_mm_load_si128(reinterpret_cast<const __m128i*>(separation)));
+        return _mm256_subs_epi16(k, _mm256_shuffle_epi32(load(box), 0x4e));
+    }
+    static FASTCCD_INLINE bool apart(__m256i first, const GridBox& second)
+    {
+        const auto less = static_cast<unsigned>(_mm256_movemask_epi8(_mm256_cmpgt_epi16(load(second), first)));
+        return (less & less >> 16) != 0;
+    }
+
+private:
+    static FASTCCD_INLINE __m256i load(const GridBox& box) { return _mm256_load_si256(reinterpret_cast<const __m256i*>(&box)); }
+};
+
+template <>
+struct BatchTraits<xsimd::avx2> : WideBoxes {
+    static FASTCCD_INLINE unsigned bits(__m256d m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
+    using Collector = CoordinateCollector<BatchTraits>;
+    static FASTCCD_INLINE __m256d collect(const double* const* from, std::size_t offset)
+    {
+        return _mm256_set_pd(from[3][offset], from[2][offset], from[1][offset], from[0][offset]);
+    }
+    static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m256d x)
+    {
+        const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[bits]));
+        _mm256_storeu_pd(p, _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(x), order)));
+    }
+    class Joiner {
+    public:
+        FASTCCD_INLINE explicit Joiner(unsigned bits)
+        {
+            const unsigned low = bits & 15, high = bits >> 4;
+            const int from_low = __builtin_popcount(low);
+            // Those of the second batch come after `from_low` doubles of the first.
+            alignas(64) static constexpr int behind[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7};
+            const __m256i shift = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(behind + 8 - 2 * from_low));
+            low_order_ = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[low]));
+            high_order_ = _mm256_permutevar8x32_epi32(
+                _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[high])), shift);
+            is_high_ = _mm256_castsi256_pd(_mm256_cmpgt_epi64(_mm256_set_epi64x(4, 3, 2, 1), _mm256_set1_epi64x(from_low)));
+        }
+        FASTCCD_INLINE __m256d operator()(__m256d low, __m256d high) const
+        {
+            return _mm256_blendv_pd(permuted(low, low_order_), permuted(high, high_order_), is_high_);
+        }
+
+    private:
+        static FASTCCD_INLINE __m256d permuted(__m256d x, __m256i order)
+        {
+            return _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(x), order));
+        }
+        __m256i low_order_, high_order_;
+        __m256d is_high_;
+    };
+    static FASTCCD_INLINE unsigned bits(__m256 m) { return static_cast<unsigned>(_mm256_movemask_ps(m)); }
+    static constexpr bool screens_scenes_in_either = false;
+    static FASTCCD_INLINE __m256 min(__m256 a, __m256 b) { return _mm256_min_ps(a, b); }
+    static FASTCCD_INLINE __m256 max(__m256 a, __m256 b) { return _mm256_max_ps(a, b); }
+    static FASTCCD_INLINE __m256d widened_low(__m256 x) { return _mm256_cvtps_pd(_mm256_castps256_ps128(x)); }
+    static FASTCCD_INLINE __m256d widened_high(__m256 x) { return _mm256_cvtps_pd(_mm256_extractf128_ps(x, 1)); }
+    static FASTCCD_INLINE __m256 narrowed(__m256d low, __m256d high)
+    {
+        return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
+    }
+    static FASTCCD_INLINE __m256d min(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
+    static FASTCCD_INLINE __m256d max(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
+    static FASTCCD_INLINE __m256d difference(__m256d a, __m256d b) { return _mm256_sub_pd(a, b); }
+    static constexpr unsigned transposed_records = 4;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        transpose_four_records(records, start, end, stride);
+    }
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

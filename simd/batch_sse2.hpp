@@ -1,0 +1,66 @@
+// Batches of two doubles or four floats, in SSE2.
+#pragma once
+
+#include <batch_traits.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+FASTCCD_INLINE void transpose_two_records(const double* const* records, double* start, double* end, std::size_t stride)
+{
+    const __m128d a0 = _mm_loadu_pd(records[0]), a1 = _mm_loadu_pd(records[0] + 2), a2 = _mm_loadu_pd(records[0] + 4);
+    const __m128d b0 = _mm_loadu_pd(records[1]), b1 = _mm_loadu_pd(records[1] + 2), b2 = _mm_loadu_pd(records[1] + 4);
+    _mm_storeu_pd(start, _mm_unpacklo_pd(a0, b0));
+    _mm_storeu_pd(start + stride, _mm_unpackhi_pd(a0, b0));
+    _mm_storeu_pd(start + 2 * stride, _mm_unpacklo_pd(a1, b1));
+    _mm_storeu_pd(end, _mm_unpackhi_pd(a1, b1));
+    _mm_storeu_pd(end + stride, _mm_unpacklo_pd(a2, b2));
+    _mm_storeu_pd(end + 2 * stride, _mm_unpackhi_pd(a2, b2));
+}
+
+template <>
+struct BatchTraits<xsimd::sse2> {
+    static FASTCCD_INLINE unsigned bits(__m128d m) { return static_cast<unsigned>(_mm_movemask_pd(m)); }
+    using Collector = CoordinateCollector<BatchTraits>;
+    static FASTCCD_INLINE __m128d collect(const double* const* from, std::size_t offset)
+    {
+        return _mm_set_pd(from[1][offset], from[0][offset]);
+    }
+    static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m128d x)
+    {
+        _mm_storeu_pd(p, bits == 2 ? _mm_unpackhi_pd(x, x) : x);
+    }
+    static FASTCCD_INLINE unsigned bits(__m128 m) { return static_cast<unsigned>(_mm_movemask_ps(m)); }
+    static constexpr bool screens_scenes_in_either = false;
+    static FASTCCD_INLINE __m128 min(__m128 a, __m128 b) { return _mm_min_ps(a, b); }
+    static FASTCCD_INLINE __m128 max(__m128 a, __m128 b) { return _mm_max_ps(a, b); }
+    static FASTCCD_INLINE __m128 narrowed(__m128d low, __m128d high) { return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high)); }
+    static FASTCCD_INLINE __m128d widened_low(__m128 x) { return _mm_cvtps_pd(x); }
+    static FASTCCD_INLINE __m128d widened_high(__m128 x) { return _mm_cvtps_pd(_mm_movehl_ps(x, x)); }
+    static FASTCCD_INLINE __m128d min(__m128d a, __m128d b) { return _mm_min_pd(a, b); }
+    static FASTCCD_INLINE __m128d max(__m128d a, __m128d b) { return _mm_max_pd(a, b); }
+    static FASTCCD_INLINE __m128d difference(__m128d a, __m128d b) { return _mm_sub_pd(a, b); }
+    static constexpr unsigned transposed_records = 2;
+    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    {
+        transpose_two_records(records, start, end, stride);
+    }
+    struct FirstBox {
+        __m128i start, end;
+    };
+    static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation)
+    {
+        const __m128i k = load_eight(separation);
+        return {_mm_subs_epi16(k, _mm_shuffle_epi32(load_eight(box.start), 0x4e)),
+                _mm_subs_epi16(k, _mm_shuffle_epi32(load_eight(box.end), 0x4e))};
+    }
+    static FASTCCD_INLINE bool apart(const FirstBox& first, const GridBox& second)
+    {
+        return _mm_movemask_epi8(_mm_and_si128(_mm_cmplt_epi16(first.start, load_eight(second.start)),
+                                               _mm_cmplt_epi16(first.end, load_eight(second.end)))) != 0;
+    }
+
+private:
+    static FASTCCD_INLINE __m128i load_eight(const std::int16_t* p) { return _mm_load_si128(reinterpret_cast<const __m128i*>(p)); }
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
