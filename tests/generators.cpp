@@ -401,4 +401,17 @@ void generate(const std::string& family, Kind kind, std::uint64_t seed, std::siz
     }
 }
 
+std::vector<Pair> mixed_pairs(Kind kind, std::uint64_t seed, std::size_t per_family) {
+    std::vector<Pair> in_order, of_family;
+    for (const std::string& family : families()) {
+        generate(family, kind, seed, per_family, of_family);
+        in_order.insert(in_order.end(), of_family.begin(), of_family.end());
+    }
+    std::vector<Pair> mixed(in_order.size());
+    std::size_t stride = 7919;  // a prime; where it divides the size, the next odd number that does not
+    while (in_order.size() % stride == 0) stride += 2;
+    for (std::size_t i = 0; i < in_order.size(); ++i) mixed[(i * stride) % in_order.size()] = in_order[i];
+    return mixed;
+}
+
 }  // namespace fastccd::testing

@@ -19,4 +19,7 @@ const std::vector<std::string>& families();
 void generate(const std::string& family, oracle::Kind kind, std::uint64_t seed, std::size_t n,
               std::vector<oracle::Pair>& out);
 
+/// `per_family` pairs of each family, in an order in which any batch holds easy and hard ones, of both kinds of coordinates.
+std::vector<oracle::Pair> mixed_pairs(oracle::Kind kind, std::uint64_t seed, std::size_t per_family);
+
 }  // namespace fastccd::testing

@@ -58,21 +58,6 @@ void expect_same_on_every_isa(oracle::Kind kind, const PairView& pairs, double t
     }
 }
 
-/// Pairs of every family, of both kinds of coordinates, mixed so that any batch holds easy and hard ones.
-std::vector<oracle::Pair> mixed_pairs(oracle::Kind kind, std::uint64_t seed, std::size_t per_family)
-{
-    std::vector<oracle::Pair> mixed, family_pairs;
-    for (const std::string& family : families()) {
-        generate(family, kind, seed, per_family, family_pairs);
-        mixed.insert(mixed.end(), family_pairs.begin(), family_pairs.end());
-    }
-    std::vector<oracle::Pair> shuffled(mixed.size());
-    std::size_t stride = 7919;  // a prime that does not divide the size
-    while (mixed.size() % stride == 0) stride += 2;
-    for (std::size_t i = 0; i < mixed.size(); ++i) shuffled[(i * stride) % mixed.size()] = mixed[i];
-    return shuffled;
-}
-
 constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_edge};
 
 TEST(SameBits, IsasOnMadePairs)

@@ -57,6 +57,12 @@ int compare(const Dyadic& a, const Dyadic& b) {
     return cmp(a.numerator, mpz_class(b.numerator << (a.level - b.level)));
 }
 
+void bring_to_common_level(Dyadic& a, Dyadic& b) {
+    const mp_bitcnt_t level = std::max(a.level, b.level);
+    a = {a.numerator << (level - a.level), level};
+    b = {b.numerator << (level - b.level), level};
+}
+
 int to_common_integers(std::span<const double> values, std::span<mpz_class> integers) {
     int least = 0;
     bool any = false;

@@ -22,6 +22,9 @@ Dyadic to_dyadic(double value, int shift = 0);
 /// Sign of a - b.
 int compare(const Dyadic& a, const Dyadic& b);
 
+/// Writes both, unchanged in value, with the larger one of their levels.
+void bring_to_common_level(Dyadic& a, Dyadic& b);
+
 /// Multiplies finite doubles by the one power of two that makes them all integers and returns its exponent e:
 /// integers[i] = values[i] 2^e, exactly.
 int to_common_integers(std::span<const double> values, std::span<mpz_class> integers);

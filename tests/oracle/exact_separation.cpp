@@ -119,9 +119,7 @@ Farther farther_throughout(Kind kind, const Pair& pair, double d, double t_begin
     if (!is_finite(pair) || !(t_begin <= t_end) || !(d >= 0.0)) throw std::invalid_argument("farther_throughout: not finite, or no interval");
     const Prover prover(kind, pair, d);
     Dyadic first = to_dyadic(t_begin), last = to_dyadic(t_end);
-    const mp_bitcnt_t level = std::max(first.level, last.level);
-    first = {first.numerator << (level - first.level), level};
-    last = {last.numerator << (level - last.level), level};
+    bring_to_common_level(first, last);
 
     struct Interval {
         Moment begin, end;

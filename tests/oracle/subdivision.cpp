@@ -78,9 +78,7 @@ Separation subdivide(Kind kind, const Pair& pair, double t_begin, double t_end, 
     if (!is_finite(pair) || !(t_begin <= t_end)) throw std::invalid_argument("subdivide: not finite, or no interval");
     const IntegerPair scaled(pair);
     Dyadic first = to_dyadic(t_begin), last = to_dyadic(t_end);
-    const mp_bitcnt_t level = std::max(first.level, last.level);
-    first = {first.numerator << (level - first.level), level};
-    last = {last.numerator << (level - last.level), level};
+    bring_to_common_level(first, last);
 
     struct Interval {
         Moment begin, end;
