@@ -55,34 +55,52 @@ FASTCCD_INLINE L above_until(const Quadratic<L>& f, L e)
 /// still, and the hull's end is as good. A choice.
 inline constexpr double straight = 0x1p-20;
 
+/// A cubic at s, less e.
+template <class L>
+struct CubicAt {
+    L value, slope, half_curvature;
+};
+template <class L>
+FASTCCD_INLINE CubicAt<L> cubic_at(L c0, L c1, L c2, L c3, L s, L e)
+{
+    const L p = lerp(c0, c1, s), q = lerp(c1, c2, s), r = lerp(c2, c3, s), a = lerp(p, q, s), b = lerp(q, r, s), three = broadcast<L>(3.0);
+    return {lerp(a, b, s) - e, three * (b - a), three * ((r - q) - (q - p))};
+}
+
+/// Steps that follow a bent cubic beyond its hull: of those that graze zero, each leaves a fraction of the way.
+inline constexpr int steps_beyond_hull = 3;
+
 /// Until the hull of its coefficients comes down to e, along a line between two of them, at least: those on an interval up to there stay above.
-/// Where they are not in line, somewhat on: to where Newton's method leads if that is above e, as where it is convex, else along the
-/// secant, which is below it where it is concave. The third of the coefficients on [0, s] is the quadratic of the first three at s, whose
-/// hull is that of these three, stretched by 3/2; the second one stays above e for longer.
+/// Where they are not in line, on to where the cubic itself comes down: by its quadratic Taylor polynomial, which is exact where the cubic only
+/// grazes zero and Newton's method would halve the way; if that leads too far, by Newton's where it is convex, along the secant where it is
+/// concave, neither of which passes the zero. But no farther than the inner coefficients on [0, s] are above e, too: the second one is the
+/// line from c0 to c1 at s, the third the quadratic of the first three.
 template <class L>
 FASTCCD_INLINE L above_until(const Cubic<L>& f, L e)
 {
     constexpr double first = 1.0 / 3.0, second = 2.0 / 3.0;
-    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0), two = broadcast<L>(2.0);
     const L c0 = abs(f.c0), c1 = times_sign(f.c1, f.c0), c2 = times_sign(f.c2, f.c0), c3 = times_sign(f.c3, f.c0);
-    const L inner = min(down_at(c0, 0.0, c1, first, e), down_at(c0, 0.0, c2, second, e), down_at(c1, first, c2, second, e));
+    const L to_second = down_at(c0, 0.0, c1, first, e);
+    const L inner = min(to_second, down_at(c0, 0.0, c2, second, e), down_at(c1, first, c2, second, e));
     const L hull = min(inner, min(down_at(c0, 0.0, c3, 1.0, e), down_at(c1, first, c3, 1.0, e), down_at(c2, second, c3, 1.0, e)));
-    const L until = select<L>(less(e, c0), hull, zero), bend = max(abs((c2 - c1) - (c1 - c0)), abs((c3 - c2) - (c2 - c1)));
-    const LaneMask<L> bent = less(broadcast<L>(straight) * c0, bend) & less(zero, until) & less(until, one);
+    L until = select<L>(less(e, c0), hull, zero);
+    const L bend = max(abs((c2 - c1) - (c1 - c0)), abs((c3 - c2) - (c2 - c1)));
+    LaneMask<L> bent = less(broadcast<L>(straight) * c0, bend) & less(zero, until) & less(until, one);
     if (Lane<L>::bits(bent) == 0) return until;
 
-    struct Value {
-        L f, slope;
-    };
-    const auto at = [&](L s) FASTCCD_INLINE_LAMBDA -> Value {
-        const L p = lerp(c0, c1, s), q = lerp(c1, c2, s), r = lerp(c2, c3, s), a = lerp(p, q, s), b = lerp(q, r, s);
-        return {lerp(a, b, s) - e, broadcast<L>(3.0) * (b - a)};
-    };
-    const Value here = at(until);
-    const L newton = min(max(until - here.f / here.slope, until), min(broadcast<L>(1.5) * inner, one));
-    const L there = at(newton).f, secant = until + (newton - until) * (here.f / (here.f - there));
-    const LaneMask<L> comes_down = bent & less(zero, here.f) & less(here.slope, zero);
-    return select<L>(comes_down, select<L>(less(there, zero), secant, newton), until);
+    const L most = min(min(broadcast<L>(3.0) * to_second, one), above_until(Quadratic<L>{c0, c1, c2}, e));
+    for (int k = 0; k < steps_beyond_hull; ++k) {
+        const CubicAt<L> here = cubic_at(c0, c1, c2, c3, until, e);
+        bent = bent & less(zero, here.value) & less(here.slope, zero) & less(until, most);
+        if (Lane<L>::bits(bent) == 0) break;
+        const L discriminant = here.slope * here.slope - broadcast<L>(4.0) * here.half_curvature * here.value;
+        const L step = (two * here.value) / (sqrt(max(discriminant, zero)) - here.slope);
+        const L there = cubic_at(c0, c1, c2, c3, until + step, e).value;
+        const L safe = select<L>(less(here.half_curvature, zero), step * (here.value / (here.value - there)), negated(here.value / here.slope));
+        until = select<L>(bent, min(until + select<L>(less(zero, there), step, safe), most), until);
+    }
+    return until;
 }
 
 /// The time from a to b that lies at this share of the way, 0 at a.

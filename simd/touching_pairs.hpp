@@ -61,6 +61,29 @@ FASTCCD_INLINE L apart_before(const PolynomialsOf<L>& pair, const PolynomialsOf<
     return time;
 }
 
+/// From `time`, the start of a leaf, on: past the intervals that the search halves the step to and that are apart by its own certificates and
+/// bounds, as it asks for them or for one around them; to the start of the first leaf that is not, or to the end. Wider and wider ones first,
+/// then narrower and narrower ones: where a pair grazes, some ten leaves lie between the end of what is certain with margins and that leaf.
+template <PairKind kind, class L>
+__attribute__((noinline)) L apart_by_intervals(const PairCoefficientsOf<L>& pair, L time, double leaf_width, LaneMask<L> asked)
+{
+    const L one = broadcast<L>(1.0);
+    const auto pass = [&](double width, LaneMask<L> lanes) FASTCCD_INLINE_LAMBDA {
+        if (Lane<L>::bits(lanes) == 0) return lanes;
+        const L end = time + broadcast<L>(width);  // exact: multiples of a leaf's width
+        const LaneMask<L> passed = lanes & apart_on<kind>(pair, time, end);
+        time = select<L>(passed, end, time);
+        return passed;
+    };
+    double width = leaf_width;
+    for (LaneMask<L> widening = asked & less(time, one); width < 1.0 && Lane<L>::bits(widening) != 0; width *= 2.0) {
+        const LaneMask<L> second_half = widening & less(interval_start(time, 2.0 * width), time);
+        widening = widening & !(second_half & !pass(width, second_half)) & less(time, one);
+    }
+    for (; leaf_width <= width; width *= 0.5) pass(width, asked & less(time, one) & less_equal(time, interval_start(time, width)));
+    return time;
+}
+
 /// Those of `asked` that the search finds apart on none of the intervals that hold a leaf, but for the leaf and the step.
 template <PairKind kind, class L>
 __attribute__((noinline)) LaneMask<L> not_apart_around(const PairCoefficientsOf<L>& pair, L left, double leaf_width, LaneMask<L> asked)
@@ -156,7 +179,8 @@ FASTCCD_INLINE SearchedPairs<L> searched_pairs(const double* coordinates, unsign
 
 /// How often a leaf is asked for and, if the pair is apart there and in the next one, what comes after. Apart from those that contain the
 /// end of a certificate or such a leaf, all intervals have a certificate: in all the search examines 3,000 at most, below its cap, two on
-/// each of 50 levels for 24 certificates and six leaves.
+/// each of 50 levels for 24 certificates and six leaves. What apart_by_intervals() passes lies beside those on the way to the leaf before it
+/// and to the one at which it ends.
 inline constexpr int most_leaves_asked = 3;
 
 /// Pairs that may be in contact in any leaf.
@@ -177,7 +201,10 @@ FASTCCD_INLINE Contacts<L> contact_anywhere(const SearchedPairs<L>& searched, co
     const PolynomialsOf<L> sure = with_margins<kind>(pair);
     L time = zero;
     for (int k = 0; Lane<L>::bits(open) != 0; ++k) {
-        time = apart_before<kind>(pair, sure, time, parameters, open);
+        const L from = time;
+        time = apart_before<kind>(pair, sure, from, parameters, open);
+        // Those that no certificate with margins leads on from the two leaves before.
+        if (k != 0) time = apart_by_intervals<kind>(pair, time, parameters.leaf_width, open & less_equal(time, from));
         found.apart = found.apart | (open & less_equal(one, time));
         open = open & less(time, one);
         if (k == most_leaves_asked || Lane<L>::bits(open) == 0) break;

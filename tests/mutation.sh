@@ -223,8 +223,11 @@ mutant 'touch: lanes, wider intervals by the bounds' $in_leaves 's/set_bounds<ki
 mutant 'touch: lanes, wider intervals not asked' $in_leaves 's/asked = asked & !apart_on<kind>\(pair, start, [^;]*;//' touching_test same_bits_test stress
 ends=kernels/last_certificate.hpp
 mutant 'ends of certificates: cubics above lines to their last coefficient' $ends 's/min\(down_at\(c0, 0\.0, c3, 1\.0, e\), [^;]*;/down_at(c0, 0.0, c3, 1.0, e));/' touching_test
-mutant 'ends of certificates: cubics where Newton leads' $ends 's/select<L>\(less\(there, zero\), secant, newton\)/newton/' touching_test
-mutant 'ends of certificates: cubics whatever the third coefficient' $ends 's/min\(broadcast<L>\(1\.5\) \* inner, one\)/one/' touching_test
+mutant 'ends of certificates: cubics where their Taylor polynomial leads' $ends 's/select<L>\(less\(zero, there\), step, safe\)/step/' touching_test
+mutant 'ends of certificates: cubics whatever the third coefficient' $ends 's/one\), above_until\(Quadratic<L>\{c0, c1, c2\}, e\)\)/one), one)/' touching_test
+mutant 'ends of certificates: cubics by their hull' $ends 's/steps_beyond_hull = 3/steps_beyond_hull = 0/' touching_test
+mutant 'touch: lanes, intervals passed unasked' $in_leaves 's/passed = lanes & apart_on<kind>\(pair, time, end\)/passed = lanes/' touching_test same_bits_test
+mutant 'touch: lanes, no interval passed' $in_leaves 's/if \(k != 0\) time = apart_by_intervals/if (k > 9) time = apart_by_intervals/' touching_test
 mutant 'touch: lanes, the first leaf by its start' $in_leaves 's/asked & certain & less\(broadcast<L>\(0\.0\), left\)/asked \& certain/' touching_test same_bits_test
 mutant 'touch: lanes, the first leaf without its proof' $in_leaves 's/present & \(certain \| /present \& (/' touching_test
 mutant 'touch: lanes, the last note counts' simd/lane_results.hpp 's/if \(is_first\) scratch/scratch/' same_bits_test touching_test stress
