@@ -4,7 +4,8 @@
 //
 // A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses that are apart by more
 // than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up
-// to where it meets (touching.hpp); by halving it further where these do not tell.
+// to where it meets (touching.hpp); by halving it further where these do not tell. Where leaf after leaf is cleared by its parts alone,
+// directions keep the pair apart for longer (skip_along_directions).
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation
@@ -36,7 +37,7 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
     if (first > 1.0) return result;
     result.proof = leaves.proof_of_contact(first);
     if (result.proof != Proof::leaf && leaves.in_doubt(first)) {
-        const double apart = apart_until(pair.coefficients(), parameters, first);
+        const double apart = apart_until(pair.coefficients(), parameters, first).toi;
         if (apart > 1.0) return {.toi = result.toi, .intervals = result.intervals};
         // What is proven around `first` is not before `apart`, hence no farther from it.
         if (result.proof == Proof::none && apart > first) result.proof = leaves.proof_nearby(apart);

@@ -32,6 +32,14 @@ public:
         push({i.middle(), i.b});
         push({i.a, i.middle()});
     }
+    /// Drops what ends before `time`. The interval that it lies inside of is halved until what holds it is no wider than `narrowest`.
+    void skip_to(double time, double narrowest)
+    {
+        while (size_ != 0 && (peek(0).b < time || (peek(0).a < time && narrowest < peek(0).width()))) {
+            const Interval i = pop();
+            if (time <= i.b) push_halves(i);
+        }
+    }
 
 private:
     Interval data_[capacity];

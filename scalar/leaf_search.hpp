@@ -8,6 +8,7 @@
 #include <certified_search.hpp>
 #include <ordered_search.hpp>
 #include <pair_polynomials.hpp>
+#include <separation_search.hpp>
 
 namespace fastccd::scalar {
 
@@ -46,8 +47,13 @@ public:
                 stack.push_halves(*found);
                 continue;
             }
-            const double contact = is_wide ? found->a : contact_in_leaf(*found);
-            if (contact == none) continue;
+            const unsigned before = search_.intervals;
+            const unsigned most_parts = pair_.has_area(found->a) ? most_intervals_in_leaf : most_in_thin_leaf;
+            const double contact = is_wide ? found->a : contact_in_leaf(*found, most_parts);
+            if (contact == none) {
+                if (search_.intervals != before) skip_along_directions(*found, stack);
+                continue;
+            }
             leaf_of_answer_ = *found;
             return contact;
         }
@@ -55,8 +61,9 @@ public:
     }
 
     /// For a leaf without a certificate: `none` if it is apart after all; its left end, but for the first leaf, if contact is
-    /// proven inside; otherwise a time just before it touches there, or the left end of the first part that cannot be cleared.
-    double contact_in_leaf(Interval leaf)
+    /// proven inside; otherwise a time just before it touches there, or the left end of the first part that cannot be cleared, of as many as
+    /// may be examined.
+    double contact_in_leaf(Interval leaf, unsigned most_parts = most_intervals_in_leaf)
     {
         // A positive lower bound is wanted for a pair that is apart at time 0, proven contact or not.
         if (leaf.a > 0.0 && pair_.contact_proven(leaf)) return leaf.a;
@@ -84,10 +91,11 @@ public:
         parts.intervals = search_.intervals;
         IntervalStack stack;
         stack.push(is_first ? leaf : Interval{0.0, 1.0});
-        const unsigned limit = std::min(search_.intervals + most_intervals_in_leaf, most_intervals);
+        const unsigned limit = std::min(search_.intervals + most_parts, most_intervals);
         const auto part = parts.next_without_certificate(stack, true, limit, is_finest);
         search_.intervals = parts.intervals;
-        return part ? in_step(part->a) : none;
+        out_of_parts_ = search_.intervals > limit;
+        return part ? std::max(in_step(part->a), skipped_to_) : none;
     }
 
     /// After first_contact() has found something at s: whether there is contact for certain, in the leaf that s lies in or
@@ -108,15 +116,36 @@ public:
     /// below most_intervals_in_leaf has come to. Not where it touches: that has been looked at (counts_as_contact_at).
     [[nodiscard]] bool in_doubt(double s) const
     {
-        return touch_ == none && (search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
+        return touch_ == none && (out_of_parts_ || search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
     }
 
     [[nodiscard]] unsigned intervals() const { return search_.intervals; }
+    /// Until when the search went along directions, 0 if it did not: what is asked of a leaf before says nothing of its answer.
+    [[nodiscard]] double skipped_to() const { return skipped_to_; }
     /// One that was examined by someone who shares the cap.
     void count_interval() { ++search_.intervals; }
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;
+    /// Where the shape is nearly degenerate, directions go on from the first part that is not cleared (in_doubt): enough for one way down
+    /// to the spacing of doubles.
+    static constexpr unsigned most_in_thin_leaf = 128;
+    /// Where volumes and areas vanish for a while, as when both edges are points for a moment, leaf after leaf is cleared by its parts alone:
+    /// thousands of leaves, up to dozens of parts each. After every fourth of them the search asks how long directions keep the pair apart, and goes
+    /// on there; not any more when that has led it less than `least_skipped` leaves on. Looks count as intervals.
+    static constexpr unsigned laborious_leaves = 4, most_looks_to_skip = 256;
+    static constexpr double least_skipped = 8;
+
+    void skip_along_directions(Interval leaf, IntervalStack& stack)
+    {
+        if (++laborious_ % laborious_leaves != 0 || !directions_help_) return;
+        const SearchResult apart = apart_until(pair_.coefficients(), parameters_, leaf.b, most_looks_to_skip);
+        search_.intervals += apart.intervals;
+        directions_help_ = apart.toi - leaf.b >= least_skipped * parameters_.leaf_width;
+        skipped_to_ = apart.toi;
+        stack.skip_to(apart.toi, parameters_.leaf_width);
+    }
+
     /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or to finest_at_zero.
     static constexpr double finest_relative = 0x1p-52;
 
@@ -126,6 +155,10 @@ private:
     OrderedSearch<kind> search_;
     Interval leaf_of_answer_{0.0, 1.0};  ///< Where first_contact() found contact.
     double touch_ = none;                ///< And where it touches in there (touching.hpp).
+    bool out_of_parts_ = false;          ///< The last leaf had more than could be examined.
+    unsigned laborious_ = 0;             ///< Leaves cleared by their parts so far.
+    bool directions_help_ = true;
+    double skipped_to_ = 0.0;            ///< Apart until then along directions.
 };
 
 }  // namespace fastccd::scalar

@@ -46,13 +46,14 @@ RelativeMotion<double> scaled_motion(const double* coordinates, SearchParameters
 constexpr double shortest_stretch = 0x1p-50;
 
 /// From where the last look reaches, as far as directions that follow the primitives prove a distance above d. `stretch`: how far
-/// the next one is asked; doubled and halved with success. Each counts as a look. True if they prove it to the end.
+/// the next one is asked; doubled and halved with success. Each counts as a look, of which there are to be `most`. True if they prove it
+/// to the end.
 template <PairKind kind>
-bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationParameters& wanted, const SeparationBounds& bounds)
+bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationParameters& wanted, const SeparationBounds& bounds, double most)
 {
     pair.time = past_window(pair, pair.high);
     bool farther = true;
-    while (farther && pair.time < 1.0 && pair.looks < most_looks) {
+    while (farther && pair.time < 1.0 && pair.looks < most) {
         const double end = std::min(pair.time + stretch, 1.0);
         farther = FollowingDirection<kind>{pair.r, pair.time, end}.farther(pair.extents, wanted, bounds);
         pair.looks += 1.0;
@@ -66,18 +67,19 @@ bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationPar
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// From where the pair is on its way; the time in units of t_max.
+/// From where the pair is on its way; the time in units of t_max. After `most` looks, fewer than most_looks, the time reached.
 template <PairKind kind>
-SearchResult walk(SeparationRecord<double>& pair, const SearchParameters& parameters, double limit)
+SearchResult walk(SeparationRecord<double>& pair, const SearchParameters& parameters, double limit, double most = most_looks)
 {
     const SeparationBounds bounds{parameters.bounds.rho};
     double stretch = 1.0;
     while (true) {
         const StepOutcome<double> outcome = step<kind>(pair, separation<kind>(positions(pair.r, pair.at).r), parameters, limit);
-        const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds);
+        const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds, most);
         const auto looks = static_cast<unsigned>(pair.looks);
         if (outcome.farther.value || followed) return {.toi = never, .intervals = looks};
         if (outcome.contact.value) return {.toi = pair.time, .proof = outcome.proven.value ? Proof::leaf : Proof::none, .intervals = looks};
+        if (most < most_looks && most <= pair.looks) return {.toi = pair.time, .intervals = looks};
     }
 }
 
@@ -102,14 +104,14 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
 }
 
 template <PairKind kind>
-double search_on(const PairCoefficients& coefficients, SearchParameters parameters, double time)
+SearchResult search_on(const PairCoefficients& coefficients, SearchParameters parameters, double time, double most)
 {
     parameters.separation = SeparationParameters{};
     SeparationRecord<double> pair{};
     pair.r = with_normalized_extents(motion_of<double>(coefficients));
     pair.extents = extents(pair.r);
     pair.time = pair.at = pair.window_low = pair.window_high = time;
-    return walk<kind>(pair, parameters, 1.0).toi;
+    return walk<kind>(pair, parameters, 1.0, most);
 }
 
 }  // namespace
@@ -121,10 +123,10 @@ SearchResult separation_search(PairKind kind, const double* coordinates, const S
                                          : search<PairKind::edge_edge>(coordinates, parameters, limit);
 }
 
-double apart_until(const PairCoefficients& pair, const SearchParameters& parameters, double time)
+SearchResult apart_until(const PairCoefficients& pair, const SearchParameters& parameters, double time, unsigned most)
 {
-    return pair.kind == PairKind::vertex_face ? search_on<PairKind::vertex_face>(pair, parameters, time)
-                                              : search_on<PairKind::edge_edge>(pair, parameters, time);
+    return pair.kind == PairKind::vertex_face ? search_on<PairKind::vertex_face>(pair, parameters, time, most)
+                                              : search_on<PairKind::edge_edge>(pair, parameters, time, most);
 }
 
 }  // namespace fastccd::scalar

@@ -8,6 +8,7 @@
 #include <certified_search.hpp>
 
 #include "allocation_count.hpp"
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "test_data.hpp"
@@ -80,6 +81,21 @@ TEST(Bounded, IntervalsOfMadePairs)
         EXPECT_LT(hard.at_cap, hard.pairs / 50);
         EXPECT_GT(ordinary.largest, 40u) << "no search went down to a leaf: nothing was tested";
     }
+}
+
+/// Volumes and areas vanish next to a moment at which both primitives are points or lines: of thousands of leaves none has a certificate by
+/// itself. Directions lead past them.
+TEST(Bounded, MomentsWithoutAreaAreSkipped)
+{
+    Work moments;
+    for (const auto kind : kinds)
+        for (const char* family : {"momentary_degenerate", "f32_momentary_degenerate"}) {
+            std::vector<oracle::Pair> pairs;
+            generate(family, kind, 104, amount(2000), pairs);
+            moments.add(kind, pairs, 1e-9);
+        }
+    moments.report("moments without area", 1e-9);
+    EXPECT_LT(moments.largest, 2048u);
 }
 
 /// Found by hill climbing: the cubic stays within its rounding near a double root, in and out of it again and again. They came

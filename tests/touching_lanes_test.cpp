@@ -81,7 +81,9 @@ void compare_lanes(const KernelTable& kernels, const std::vector<oracle::Pair>& 
         ask(anywhere, {&pair, 0.0, found});
         // Lanes ask only where the search comes to.
         const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
-        const double last = polynomials.apart() ? scalar::LeafSearch<kind>::none : scalar::LeafSearch<kind>{polynomials, parameters}.first_contact();
+        scalar::LeafSearch<kind> leaves{polynomials, parameters};
+        const double last = polynomials.apart() ? scalar::LeafSearch<kind>::none : leaves.first_contact();
+        if (leaves.skipped_to() > 0.0) continue;  // along directions, past leaves that no certificate clears
         // Of a pair that is apart, where contact would be.
         const double near = last <= 1.0 ? last : scalar::ExpectedContact{polynomials.coefficients(), parameters}.from(0.0);
         if (std::isfinite(near))
