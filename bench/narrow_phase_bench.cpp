@@ -25,6 +25,7 @@
 #include "bench_table.hpp"
 #include "datasets.hpp"
 #include "layouts.hpp"
+#include "query_bench.hpp"
 #include "streaming_limit.hpp"
 
 namespace fastccd::bench {
@@ -248,6 +249,7 @@ void register_benchmarks(bool filtered)
                                              [=](benchmark::State& state) { run_mesh(state, data, boxes ? make_boxes : make_mesh); })
                     ->UseManualTime()
                     ->Unit(benchmark::kMillisecond);
+    register_query_benchmarks();
 }
 
 }  // namespace
