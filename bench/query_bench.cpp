@@ -39,8 +39,10 @@ std::vector<QueryFile> query_files()
         const fs::path& path = entry.path();
         if (path.extension() != ".csv") continue;
         const fs::path folder = path.parent_path();
+        const bool is_vertex_face = folder.filename() == "vertex-face";
+        if (!is_vertex_face && folder.filename() != "edge-edge") continue;
         files.push_back({path, (folder.parent_path().filename() / path.stem()).string(),
-                         folder.filename() == "vertex-face" ? PairKind::vertex_face : PairKind::edge_edge});
+                         is_vertex_face ? PairKind::vertex_face : PairKind::edge_edge});
     }
     std::ranges::sort(files, {}, &QueryFile::path);
     return files;

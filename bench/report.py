@@ -50,6 +50,12 @@ def refuse_other_answers(record):
     set, number of threads and form of the answer."""
     answers = {}
     for name, row in rows_of(record).items():
+        if name.startswith("queries/"):
+            _, kind, _, data = name.split("/", 3)
+            first = answers.setdefault((kind, data), row["contacts"])
+            if first != row["contacts"]:
+                sys.exit(f"{name}: contacts is {row['contacts']!r}, of the same pairs elsewhere {first!r}")
+            continue
         if not name.startswith(("vertex_face/", "edge_edge/")):
             continue
         kind, _, data, _, scalar, *question = name.split("/")

@@ -71,10 +71,10 @@ FASTCCD_INLINE CubicAt<L> cubic_at(L c0, L c1, L c2, L c3, L s, L e)
 inline constexpr int steps_beyond_hull = 3;
 
 /// Until the hull of its coefficients comes down to e, along a line between two of them, at least: those on an interval up to there stay above.
-/// Where they are not in line, on to where the cubic itself comes down: by its quadratic Taylor polynomial, which is exact where the cubic only
+/// Where they are not in line, on to where the cubic itself comes down: by its quadratic Taylor polynomial, which is close where the cubic only
 /// grazes zero and Newton's method would halve the way; if that leads too far, by Newton's where it is convex, along the secant where it is
-/// concave, neither of which passes the zero. But no farther than the inner coefficients on [0, s] are above e, too: the second one is the
-/// line from c0 to c1 at s, the third the quadratic of the first three.
+/// concave: neither passes the zero unless the cubic bends the other way in between. But no farther than the inner coefficients on [0, s] are
+/// above e, too: the second one is the line from c0 to c1 at s, the third the quadratic of the first three.
 template <class L>
 FASTCCD_INLINE L above_until(const Cubic<L>& f, L e)
 {

@@ -1,6 +1,6 @@
 // The interval [0, 1] is cut into 2^depth leaves. Intervals are examined earliest first: one with a certificate is dropped, a wider
 // one is halved, and a leaf without one is looked into. The first leaf that cannot be cleared is the answer. Everything before it has a
-// certificate, as a whole or in parts, so its left end is a lower bound of the first contact.
+// certificate, as a whole or in parts, or is apart along a direction, so its left end is a lower bound of the first contact.
 //
 // A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses that are apart by more
 // than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up

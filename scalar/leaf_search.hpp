@@ -48,7 +48,8 @@ public:
                 continue;
             }
             const unsigned before = search_.intervals;
-            const unsigned most_parts = pair_.has_area(found->a) ? most_intervals_in_leaf : most_in_thin_leaf;
+            const bool has_area = pair_.has_area(found->a) || pair_.has_area(found->b);
+            const unsigned most_parts = has_area ? most_intervals_in_leaf : most_in_thin_leaf;
             const double contact = is_wide ? found->a : contact_in_leaf(*found, most_parts);
             if (contact == none) {
                 if (search_.intervals != before) skip_along_directions(*found, stack);
@@ -73,7 +74,7 @@ public:
             const Touch<double> found = pair_.touch(inside, parameters_.bounds);
             likely = found.likely;
             if (found.apart.value) return none;
-            if (found.present.value) {
+            if (found.present.value && skipped_to_ <= found.time) {
                 touch_ = found.time;
                 return found.lower_bound;
             }
@@ -112,11 +113,11 @@ public:
     [[nodiscard]] Proof proof_nearby(double s) const { return pair_.contact_proven_near(s) ? Proof::nearby : Proof::none; }
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
-    /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, or a cap on intervals, which none
-    /// below most_intervals_in_leaf has come to. Not where it touches: that has been looked at (counts_as_contact_at).
+    /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, a cap on intervals or parts, or parts
+    /// before the time to which directions have led. Not where it touches: that has been looked at (counts_as_contact_at).
     [[nodiscard]] bool in_doubt(double s) const
     {
-        return touch_ == none && (out_of_parts_ || search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
+        return touch_ == none && ((0.0 < skipped_to_ && s == skipped_to_) || out_of_parts_ || search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
     }
 
     [[nodiscard]] unsigned intervals() const { return search_.intervals; }
@@ -127,18 +128,20 @@ public:
 
 private:
     static constexpr unsigned most_intervals_in_leaf = 512;
-    /// Where the shape is nearly degenerate, directions go on from the first part that is not cleared (in_doubt): enough for one way down
-    /// to the spacing of doubles.
+    /// Where the shape is nearly degenerate at both ends of a leaf, directions go on from the first part that is not cleared (in_doubt):
+    /// enough for one way down to the spacing of doubles, but in the first leaf.
     static constexpr unsigned most_in_thin_leaf = 128;
     /// Where volumes and areas vanish for a while, as when both edges are points for a moment, leaf after leaf is cleared by its parts alone:
     /// thousands of leaves, up to dozens of parts each. After every fourth of them the search asks how long directions keep the pair apart, and goes
-    /// on there; not any more when that has led it less than `least_skipped` leaves on. Looks count as intervals.
-    static constexpr unsigned laborious_leaves = 4, most_looks_to_skip = 256;
+    /// on there; not any more when that has led it less than `least_skipped` leaves on, or at the cap. Looks count as intervals.
+    static constexpr unsigned laborious_leaves = 4;
     static constexpr double least_skipped = 8;
+    /// Lanes tell without asking the search of pairs with leaves that eq. 7 clears, one for each root of the cubic (simd/root_stages.hpp).
+    static_assert(laborious_leaves > 3);
 
     void skip_along_directions(Interval leaf, IntervalStack& stack)
     {
-        if (++laborious_ % laborious_leaves != 0 || !directions_help_) return;
+        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return;
         const SearchResult apart = apart_until(pair_.coefficients(), parameters_, leaf.b, most_looks_to_skip);
         search_.intervals += apart.intervals;
         directions_help_ = apart.toi - leaf.b >= least_skipped * parameters_.leaf_width;

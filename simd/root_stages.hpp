@@ -292,7 +292,8 @@ private:
         unsigned undecided = lanes & ~contact & ~(crossing & Lane<L>::bits(inclusion.absent));
         // The search asks for eq. 7 of the leaf, by the same text, before it reports it as one in which nothing is proven, by a look or by
         // halving; of the same lengths, unless it scales axes. Where f is not zero all axes have an extent, so those of the step are
-        // unscaled if those of the searched part are, as lanes take none that are too large.
+        // unscaled if those of the searched part are, as lanes take none that are too large. A leaf for each root at most: after some more
+        // that only eq. 7 clears, the search goes along directions (scalar/leaf_search.hpp).
         if ((undecided & crossing) != 0) {
             const LaneMask<L> apart = area_certificate<kind>(root.r, root.scale, leaf.centre, leaf.half, parameters_.bounds);
             undecided &= ~(crossing & Lane<L>::bits(apart & is_surely_unscaled(root.r, root.r)));

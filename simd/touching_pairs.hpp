@@ -2,7 +2,7 @@
 //
 // From the pair's coordinates, by the search's own text and bounds, so what it says of a leaf needs no margin. That it comes to this leaf is
 // either known from the stages before, or found out here, from one certificate to the next: those need margins, as the search asks for
-// narrower intervals.
+// narrower intervals; or by the very intervals that it asks for.
 #pragma once
 
 #include <kernel_table.hpp>
@@ -62,8 +62,8 @@ FASTCCD_INLINE L apart_before(const PolynomialsOf<L>& pair, const PolynomialsOf<
 }
 
 /// From `time`, the start of a leaf, on: past the intervals that the search halves the step to and that are apart by its own certificates and
-/// bounds, as it asks for them or for one around them; to the start of the first leaf that is not, or to the end. Wider and wider ones first,
-/// then narrower and narrower ones: where a pair grazes, some ten leaves lie between the end of what is certain with margins and that leaf.
+/// bounds, as it asks for them or for one around them; to the start of a leaf, mostly the first that is not, or to the end. Wider and wider ones
+/// first, then narrower and narrower ones: where a pair grazes, some ten leaves lie between the end of what is certain with margins and that leaf.
 template <PairKind kind, class L>
 __attribute__((noinline)) L apart_by_intervals(const PairCoefficientsOf<L>& pair, L time, double leaf_width, LaneMask<L> asked)
 {
@@ -78,7 +78,8 @@ __attribute__((noinline)) L apart_by_intervals(const PairCoefficientsOf<L>& pair
     double width = leaf_width;
     for (LaneMask<L> widening = asked & less(time, one); width < 1.0 && Lane<L>::bits(widening) != 0; width *= 2.0) {
         const LaneMask<L> second_half = widening & less(interval_start(time, 2.0 * width), time);
-        widening = widening & !(second_half & !pass(width, second_half)) & less(time, one);
+        const LaneMask<L> stopped = second_half & !pass(width, second_half);
+        widening = widening & !stopped & less(time, one);
     }
     for (; leaf_width <= width; width *= 0.5) pass(width, asked & less(time, one) & less_equal(time, interval_start(time, width)));
     return time;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <random>
 
 #include <certified_search.hpp>
@@ -14,6 +15,7 @@
 #include <leaf_search.hpp>
 #include <meeting.hpp>
 #include <pair_polynomials.hpp>
+#include <separation_search.hpp>
 
 #include "generators.hpp"
 #include "narrow_phase.hpp"
@@ -273,6 +275,55 @@ TEST(OrderedSearch, ContactAtTheStartTakesOneLook)
         EXPECT_GT(seen.pairs, 20000u);
         EXPECT_EQ(seen.not_foreseen, 0u) << "of " << seen.pairs;
     }
+}
+
+/// Directions followed for few looks: a time until which the pair is apart, not before that of fewer looks, and with all of them the end.
+TEST(OrderedSearch, DirectionsForFewLooks)
+{
+    std::size_t cut_short = 0;
+    for (const auto kind : kinds) {
+        const SearchParameters parameters{1e-9, 1.0, false};
+        std::vector<oracle::Pair> pairs;
+        generate("momentary_degenerate", kind, 205, 1000, pairs);
+        const std::vector<oracle::Pair> thin = ThinPairs{kind, 206}.next(3000);
+        pairs.insert(pairs.end(), thin.begin(), thin.end());
+        for (const oracle::Pair& pair : pairs) {
+            PairCoefficients coefficients;
+            if (kind == oracle::Kind::vertex_face)
+                coefficients = scalar::PairPolynomials<PairKind::vertex_face>{pair[0].data(), parameters}.coefficients();
+            else
+                coefficients = scalar::PairPolynomials<PairKind::edge_edge>{pair[0].data(), parameters}.coefficients();
+            double before = 0.0;
+            const double end = scalar::apart_until(coefficients, parameters, 0.0).toi;
+            for (const unsigned most : {1u, 10u, 63u, 64u, 65u, 100u, 256u}) {
+                const scalar::SearchResult few = scalar::apart_until(coefficients, parameters, 0.0, most);
+                ASSERT_LE(few.intervals, most) << lossless(pair);
+                ASSERT_GE(few.toi, before) << lossless(pair);
+                ASSERT_LE(few.toi, end) << lossless(pair);
+                cut_short += few.toi < end;
+                before = few.toi;
+            }
+        }
+    }
+    std::printf("%zu times not to the end\n", cut_short);
+    EXPECT_GT(cut_short, 100u);
+}
+
+TEST(OrderedSearch, SkippingLeavesWhatHoldsTheTime)
+{
+    const auto after_skipping_to = [](double time) {
+        scalar::IntervalStack stack;
+        stack.push_halves({0.0, 1.0});
+        stack.skip_to(time, 0.25);
+        return stack;
+    };
+    const auto first = [&](double time) { return after_skipping_to(time).peek(0); };
+    EXPECT_EQ(first(0.3), (scalar::Interval{0.25, 0.5}));
+    EXPECT_EQ(after_skipping_to(0.3).size(), 2u);
+    EXPECT_EQ(first(0.0), (scalar::Interval{0.0, 0.5}));
+    EXPECT_EQ(first(0.5).b, 0.5) << "contact at the very time is in the interval that ends with it, too";
+    EXPECT_EQ(first(1.0), (scalar::Interval{0.75, 1.0})) << "and at 1 in no other";
+    EXPECT_TRUE(after_skipping_to(std::numeric_limits<double>::infinity()).empty());
 }
 
 }  // namespace

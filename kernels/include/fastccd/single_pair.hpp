@@ -26,7 +26,7 @@ struct PairToi {
 /// Four points at t = 0, `x0`, and at t = 1, `x1`; the first is the vertex, the others are the face (paper, section 4).
 /// The same bits as in a batch. Runs the certified search in the caller's thread, whatever options.isa: microseconds, with a
 /// minimum separation up to a millisecond, without allocation (but for Options::exact); at most 4,096 intervals, 1,024 more for what
-/// is left then, and some hundred that wait; and at its distance 4,098 looks, without a minimum separation up to twice as many.
+/// is left then, and some hundred that wait; and at its distance 4,098 looks, without a minimum separation some 8,500.
 [[nodiscard]] FASTCCD_API PairToi vertex_face_toi(std::span<const Point, 4> x0, std::span<const Point, 4> x1,
                                                   const Options& options = {}) noexcept;
 
