@@ -133,7 +133,8 @@ private:
     static constexpr unsigned most_in_thin_leaf = 128;
     /// Where volumes and areas vanish for a while, as when both edges are points for a moment, leaf after leaf is cleared by its parts alone:
     /// thousands of leaves, up to dozens of parts each. After every fourth of them the search asks how long directions keep the pair apart, and goes
-    /// on there; not any more when that has led it less than `least_skipped` leaves on, or at the cap. Looks count as intervals.
+    /// on there; not any more when that has led it less than `least_skipped` leaves on, or at the cap. Looks count as intervals. Both
+    /// numbers are choices: no answer is right or wrong by them.
     static constexpr unsigned laborious_leaves = 4;
     static constexpr double least_skipped = 8;
     /// Lanes tell without asking the search of pairs with leaves that eq. 7 clears, one for each root of the cubic (simd/root_stages.hpp).

@@ -96,7 +96,7 @@ TEST(Bounded, MomentsWithoutAreaAreSkipped)
             moments.add(kind, pairs, 1e-9);
         }
     moments.report("moments without area", 1e-9);
-    EXPECT_LT(moments.largest, 2048u);
+    EXPECT_LT(moments.largest, scalar::most_intervals / 2) << "without directions, some of these come to the cap";
 }
 
 /// Found by hill climbing: the cubic stays within its rounding near a double root, in and out of it again and again. They came

@@ -164,9 +164,10 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
                     if (HasFatalFailure()) return;
                 }
             std::printf("%s, %s: %zu of %zu reported, %zu of them in the leaf after, %zu in any, %zu at the start, %zu proven; %zu apart; "
-                        "in line: %zu at the start, where %zu are left, and %zu midway, where %zu are\n",
+                        "in line: %zu at the start, where %zu are left, and %zu midway, where %zu are; %zu and %zu not asked about in their leaf, as "
+                        "directions led there\n",
                         name(isa), kind_name(kind), seen.reported, seen.asked, seen.in_next, seen.anywhere, seen.at_start, seen.proven, seen.apart,
-                        at_start.at_start, at_start.left, midway.reported, midway.left);
+                        at_start.at_start, at_start.left, midway.reported, midway.left, seen.skipped, midway.skipped);
             EXPECT_GT(seen.reported, amount(10000));
             EXPECT_GT(seen.in_next, amount(1000));
             EXPECT_GT(seen.proven, amount(1000));
@@ -177,7 +178,9 @@ TEST(Touching, LanesReportWhatTheSearchDoes)
             EXPECT_GT(at_start.left, 10u);
             EXPECT_GT(midway.reported, 100u);
             EXPECT_GT(midway.left, 10u);
-            EXPECT_LT(midway.skipped, 3600u) << "of 7,200 pairs most are to be asked about";
+            // What is left out is to stay the exception: of 600 pairs, for six tolerances and two lengths of step, a tenth.
+            EXPECT_LT(midway.skipped, 720u);
+            EXPECT_LT(seen.skipped, seen.asked / 100);
         }
 }
 
