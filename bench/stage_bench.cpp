@@ -25,10 +25,12 @@ namespace sse2_stages {
 extern const bench::StageTable stage_table;
 }
 #endif
-#if defined(FASTCCD_HAVE_AVX)
+#if defined(FASTCCD_HAVE_AVX2)
 namespace avx2_stages {
 extern const bench::StageTable stage_table;
 }
+#endif
+#if defined(FASTCCD_HAVE_AVX512)
 namespace avx512_stages {
 extern const bench::StageTable stage_table;
 }
@@ -52,8 +54,10 @@ const StageTable* const tables[] = {
 #if defined(FASTCCD_HAVE_X86)
     &sse2_stages::stage_table,
 #endif
-#if defined(FASTCCD_HAVE_AVX)
+#if defined(FASTCCD_HAVE_AVX2)
     &avx2_stages::stage_table,
+#endif
+#if defined(FASTCCD_HAVE_AVX512)
     &avx512_stages::stage_table,
 #endif
 #if defined(FASTCCD_HAVE_NEON)

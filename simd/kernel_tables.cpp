@@ -13,10 +13,12 @@ namespace sse2_lanes {
 extern const KernelTable table;
 }
 #endif
-#if defined(FASTCCD_HAVE_AVX)
+#if defined(FASTCCD_HAVE_AVX2)
 namespace avx2_lanes {
 extern const KernelTable table;
 }
+#endif
+#if defined(FASTCCD_HAVE_AVX512)
 namespace avx512_lanes {
 extern const KernelTable table;
 }
@@ -34,8 +36,10 @@ const KernelTable* kernel_table(Isa isa) noexcept
 #if defined(FASTCCD_HAVE_X86)
         case Isa::sse2: return &sse2_lanes::table;
 #endif
-#if defined(FASTCCD_HAVE_AVX)
+#if defined(FASTCCD_HAVE_AVX2)
         case Isa::avx2: return &avx2_lanes::table;
+#endif
+#if defined(FASTCCD_HAVE_AVX512)
         case Isa::avx512: return &avx512_lanes::table;
 #endif
 #if defined(FASTCCD_HAVE_NEON)

@@ -1,23 +1,31 @@
 #!/usr/bin/env bash
-# fastccd inside another project: builds with oneTBB and xsimd alone, here also without the kernels for AVX, and asks the
-# consumer for nothing. Arguments: source folder, C++ compiler, and whether BUILD_SHARED_LIBS is on.
+# fastccd inside another project: builds with oneTBB and xsimd alone, here also without the kernels for AVX, asks the consumer for nothing, and
+# is a shared library if that project sets BUILD_SHARED_LIBS. Arguments: source folder, C++ compiler.
 set -euo pipefail
-source=$1 cxx=$2 shared=$3
+source=$1 cxx=$2
 tests=$source/tests
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; echo "FAILED: $*" >&2; exit 1; }; }
+fail() { echo "FAILED: $*" >&2; exit 1; }
+quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; fail "$*"; }; }
 
-quietly env CXX="$cxx" cmake -S "$tests/consumer/add_subdirectory" -B "$work/build" -DFASTCCD_SOURCE="$source" -DFASTCCD_AVX=OFF \
-  -DBUILD_SHARED_LIBS="$shared"
+# build_with BUILD_SHARED_LIBS: in one folder for both, as few objects differ.
+build_with() {
+  quietly env CXX="$cxx" cmake -S "$tests/consumer/add_subdirectory" -B "$work/build" -DFASTCCD_SOURCE="$source" -DFASTCCD_AVX=OFF \
+    -DBUILD_SHARED_LIBS="$1"
+  quietly cmake --build "$work/build"
+  "$work/build/two_meshes" | diff "$tests/consumer/expected.txt" -
+}
+needs_library() { objdump -p "$work/build/two_meshes" | grep -q 'NEEDED *libfastccd'; }
+
+build_with OFF
 if grep -E '^(GMP|GTest|CLI11|fmt|nlohmann_json|benchmark|Eigen3)' "$work/build/CMakeCache.txt"; then
-  echo "FAILED: the library alone looked for more than oneTBB and xsimd" >&2
-  exit 1
+  fail "the library alone looked for more than oneTBB and xsimd"
 fi
-quietly cmake --build "$work/build"
-"$work/build/two_meshes" | diff "$tests/consumer/expected.txt" -
-if nm -C "$work/build/fastccd/libfastccd.a" 2>/dev/null | grep -E 'avx(2|512)_lanes'; then
-  echo "FAILED: kernels for AVX in a build without" >&2
-  exit 1
+if nm -C "$work/build/fastccd/libfastccd.a" | grep -E 'avx(2|512)_lanes'; then
+  fail "kernels for AVX in a build without"
 fi
-echo "builds as part of another project, BUILD_SHARED_LIBS=$shared"
+if needs_library; then fail "a shared library without BUILD_SHARED_LIBS"; fi
+build_with ON
+needs_library || fail "no shared library with BUILD_SHARED_LIBS"
+echo "builds as part of another project, static and shared"

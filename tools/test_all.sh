@@ -1,13 +1,19 @@
 # Sourced by test.sh --all: what needs builds of its own, in folders next to the ordinary one.
 
+lacks_avx512() { [[ $("$build/tests/fastccd_digest" 1 2>&1) == *'lacks avx512'* ]]; }
+
+# For instrumented builds, whose kernel for AVX-512 takes longest of all to compile; without AVX-512 only the ordinary one is run, emulated.
+avx512_if_here() { lacks_avx512 && echo OFF || echo ON; }
+
 # AddressSanitizer and UndefinedBehaviorSanitizer on all tests, and some seconds of fuzzing in the same build. Left out:
 # oracle_test and report_test, four minutes each or more of arithmetic in the oracle, none of the library's; report_page_test
 # runs the report itself.
 test_sanitized_and_fuzz() {
-  local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized
+  local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized avx512
+  avx512=$(avx512_if_here)
   install_packages clang libclang-rt-dev
   CC=clang CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
-    -DFASTCCD_FUZZERS=ON -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
+    -DFASTCCD_FUZZERS=ON -DFASTCCD_AVX512=$avx512 -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
   say "testing with sanitizers"
   ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)" --exclude-regex '^(oracle_test|report_test)$'
 
@@ -41,9 +47,10 @@ fuzz() {
 # ThreadSanitizer on the scheduler, with a stand-in for oneTBB (tests/thread_sanitizer/tbb/workers.h says why). By g++, because clang 14
 # leaves out loads and stores of 32 and 64 bytes, and most of those of the wide kernels are such.
 test_races() {
-  local races=$build-races fixed_addresses=(setarch --addr-no-randomize)
-  CXX=g++ build=$races configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=thread -DFASTCCD_TOOLS=OFF \
-    -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- race_test
+  local races=$build-races fixed_addresses=(setarch --addr-no-randomize) avx512
+  avx512=$(avx512_if_here)
+  CXX=g++ build=$races configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=thread -DFASTCCD_AVX512=$avx512 \
+    -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- race_test
   say "looking for races"
   # Newer kernels scatter addresses more widely than the ThreadSanitizer of g++ 12 expects; some containers cannot switch that off.
   "${fixed_addresses[@]}" true 2>/dev/null || fixed_addresses=()
@@ -66,7 +73,7 @@ test_other_machines() {
   qemu-x86_64-static -cpu Nehalem "$build/tests/fastccd_digest" $pairs | cmp - "$here"
   qemu-x86_64-static -cpu Nehalem "$build/tests/api_test" --gtest_brief=1
 
-  if [[ $("$build/tests/fastccd_digest" 1 2>&1) == *'lacks avx512'* ]]; then
+  if lacks_avx512; then
     say "emulated x86-64 with AVX-512, begun"
     emulate_avx512 >"$build/avx512.txt" 2>&1 &
     avx512=$!
