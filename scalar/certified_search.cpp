@@ -5,7 +5,7 @@
 // A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses that are apart by more
 // than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up
 // to where it meets (touching.hpp); by halving it further where these do not tell. Where leaf after leaf is cleared by its parts alone,
-// directions keep the pair apart for longer (skip_along_directions).
+// directions keep the pair apart for longer, and where they do not, eq. 7 is asked of wider intervals for a while (skip_along_directions).
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation

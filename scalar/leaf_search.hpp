@@ -38,7 +38,7 @@ public:
         IntervalStack stack;
         stack.push_halves(whole);  // it has no certificate
         unsigned limit = most_intervals, extensions = 0;
-        while (const auto found = search_.next_without_certificate(stack, false, limit, is_leaf)) {
+        while (const auto found = search_.next_without_certificate(stack, laborious_ >= laborious_leaves, limit, is_leaf)) {
             // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
             const bool is_wide = !is_leaf(*found);
             if (is_wide && extensions < most_extensions) {
@@ -52,7 +52,8 @@ public:
             const unsigned most_parts = has_area ? most_intervals_in_leaf : most_in_thin_leaf;
             const double contact = is_wide ? found->a : contact_in_leaf(*found, most_parts);
             if (contact == none) {
-                if (search_.intervals != before) skip_along_directions(*found, stack);
+                if (search_.intervals != before && skip_along_directions(*found, stack))
+                    limit = std::min(search_.intervals + most_after_directions, most_intervals);
                 continue;
             }
             leaf_of_answer_ = *found;
@@ -133,21 +134,27 @@ private:
     static constexpr unsigned most_in_thin_leaf = 128;
     /// Where volumes and areas vanish for a while, as when both edges are points for a moment, leaf after leaf is cleared by its parts alone:
     /// thousands of leaves, up to dozens of parts each. After every fourth of them the search asks how long directions keep the pair apart, and goes
-    /// on there; not any more when that has led it less than `least_skipped` leaves on, or at the cap. Looks count as intervals. Both
-    /// numbers are choices: no answer is right or wrong by them.
+    /// on there; not any more when that has led it less than `least_skipped` leaves on, or at the cap. Looks count as intervals. From the
+    /// fourth on eq. 7 is asked of wider intervals, too. Where directions end, a pair is so close that eq. 7 gets on by ever shorter steps:
+    /// `most_after_directions` are left to it, so many that the answer is in doubt then, and directions have the last word.
+    /// All three numbers are choices: no answer is right or wrong by them.
     static constexpr unsigned laborious_leaves = 4;
     static constexpr double least_skipped = 8;
+    static constexpr unsigned most_after_directions = 512;
+    static_assert(most_after_directions >= most_intervals_in_leaf);  // see in_doubt
     /// Lanes tell without asking the search of pairs with leaves that eq. 7 clears, one for each root of the cubic (simd/root_stages.hpp).
     static_assert(laborious_leaves > 3);
 
-    void skip_along_directions(Interval leaf, IntervalStack& stack)
+    /// After a laborious leaf. Whether it asked directions.
+    bool skip_along_directions(Interval leaf, IntervalStack& stack)
     {
-        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return;
+        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return false;
         const SearchResult apart = apart_until(pair_.coefficients(), parameters_, leaf.b, most_looks_to_skip);
         search_.intervals += apart.intervals;
         directions_help_ = apart.toi - leaf.b >= least_skipped * parameters_.leaf_width;
         skipped_to_ = apart.toi;
         stack.skip_to(apart.toi, parameters_.leaf_width);
+        return true;
     }
 
     /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or to finest_at_zero.

@@ -163,6 +163,8 @@ mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/result\.proof !
 mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair_\.has_area\(s\)//' nothing_invented_test never_zero_test
 mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf && leaves/result.proof == Proof::none \&\& leaves/' nothing_invented_test
 mutant 'search: nothing skipped' scalar/leaf_search.hpp 's/\|\| !directions_help_ \|\|/|| directions_help_ ||/' bounded_test
+mutant 'search: no end after directions' scalar/leaf_search.hpp 's/search_\.intervals \+ most_after_directions, most_intervals/most_intervals, most_intervals/' bounded_test
+mutant 'search: eq. 7 of leaves alone' scalar/leaf_search.hpp 's/stack, laborious_ >= laborious_leaves, limit/stack, false, limit/' nothing_invented_test
 mutant 'search: as many looks as it takes to skip' scalar/separation_search.cpp 's/if \(most < most_looks && most <= pair\.looks\) return[^;]*;//' ordered_search_test
 mutant 'search: after most looks, the time of the next' scalar/separation_search.cpp 's/return \{\.toi = pair\.time, \.intervals = looks\};(\s*\}\s*\})/return {.toi = pair.at, .intervals = looks};$1/' ordered_search_test
 mutant 'search: the leaf that ends with a skip dropped' scalar/interval_stack.hpp 's/peek\(0\)\.b < time/peek(0).b <= time/' ordered_search_test
