@@ -10,9 +10,10 @@
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation
 // goes on from there, without any separation, but where a first look in that direction has told that it would not (no_distance.hpp). It
-// tells apart what computed positions tell apart.
+// tells apart what computed positions tell apart. Where it ends later than it began, certificates may lead on again: the first search resumes.
 #include <certified_search.hpp>
 
+#include <algorithm>
 #include <limits>
 
 #include <contact_roots.hpp>
@@ -33,16 +34,22 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
     LeafSearch<kind> leaves{pair, parameters, lanes};
     double first = leaves.first_contact();
-    result.intervals = leaves.intervals();
-    if (first > 1.0) return result;
-    result.proof = leaves.proof_of_contact(first);
-    if (result.proof != Proof::leaf && leaves.in_doubt(first)) {
-        const double apart = apart_until(pair.coefficients(), parameters, first).toi;
-        if (apart > 1.0) return {.toi = result.toi, .intervals = result.intervals};
-        // What is proven around `first` is not before `apart`, hence no farther from it.
-        if (result.proof == Proof::none && apart > first) result.proof = leaves.proof_nearby(apart);
-        first = apart;
+    auto looks = static_cast<unsigned>(most_looks);
+    for (unsigned resumed = 0; first <= 1.0; ++resumed) {
+        result.proof = leaves.proof_of_contact(first);
+        if (result.proof == Proof::leaf || !leaves.in_doubt(first)) break;
+        const SearchResult apart = apart_until(pair.coefficients(), parameters, first, looks);
+        looks -= std::min(looks, apart.intervals);
+        const bool leads_on = first < apart.toi;
+        first = apart.toi;
+        if (!leads_on || first > 1.0) break;
+        // What is proven around where it began is not before that, hence no farther from it.
+        if (result.proof == Proof::none) result.proof = leaves.proof_nearby(first);
+        if (result.proof != Proof::none || resumed == most_resumed || looks == 0 || !leaves.is_apart_after(first)) break;
+        first = leaves.first_contact_after(first);
     }
+    result.intervals = leaves.intervals();
+    if (first > 1.0) return {.toi = result.toi, .intervals = result.intervals};
     result.toi = parameters.time(first);
     if (parameters.count_roots) {
         RootCounter<kind> counter{pair, parameters};

@@ -27,39 +27,31 @@ public:
     double first_contact()
     {
         const Interval whole{0.0, 1.0};
-        const auto is_leaf = [&](Interval i) { return i.width() <= parameters_.leaf_width; };
         search_.intervals = 1;
+        stack_.push_halves(whole);  // it has no certificate
         if (pair_.in_contact_at_start(parameters_.leaf_width)) {
             leaf_of_answer_ = {0.0, parameters_.leaf_width};
             if (pair_.counts_as_contact_at_start(parameters_.bounds)) touch_ = 0.0;
             return 0.0;
         }
         if (is_leaf(whole)) return pair_.apart(whole) ? none : contact_in_leaf(whole);
-        IntervalStack stack;
-        stack.push_halves(whole);  // it has no certificate
-        unsigned limit = most_intervals, extensions = 0;
-        while (const auto found = search_.next_without_certificate(stack, laborious_ >= laborious_leaves, limit, is_leaf)) {
-            // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
-            const bool is_wide = !is_leaf(*found);
-            if (is_wide && extensions < most_extensions) {
-                ++extensions;
-                limit = search_.intervals + extension;
-                stack.push_halves(*found);
-                continue;
-            }
-            const unsigned before = search_.intervals;
-            const bool has_area = pair_.has_area(found->a) || pair_.has_area(found->b);
-            const unsigned most_parts = has_area ? most_intervals_in_leaf : most_in_thin_leaf;
-            const double contact = is_wide ? found->a : contact_in_leaf(*found, most_parts);
-            if (contact == none) {
-                if (search_.intervals != before && skip_along_directions(*found, stack))
-                    limit = std::min(search_.intervals + most_after_directions, most_intervals);
-                continue;
-            }
-            leaf_of_answer_ = *found;
-            return contact;
-        }
-        return none;
+        return next_contact(most_intervals);
+    }
+
+    /// Whether some certificate tells that the pair is apart right after `time`, in what is far less than a leaf.
+    [[nodiscard]] bool is_apart_after(double time) const
+    {
+        return pair_.apart({time, std::min(time + std::min(0x1p-10 * parameters_.leaf_width, 0x1p-40), 1.0)});
+    }
+
+    /// The same after first_contact() has found something, and directions have told that the pair is apart until `time`, later: from there on.
+    double first_contact_after(double time)
+    {
+        // What waits begins where that ends; but all of the step still waits if it was contact at its start.
+        if (stack_.empty() || stack_.peek(0).a > 0.0) stack_.push(leaf_of_answer_);
+        touch_ = none;
+        go_on_at(time);
+        return next_contact(limit_after_directions());
     }
 
     /// For a leaf without a certificate: `none` if it is apart after all; its left end, but for the first leaf, if contact is
@@ -81,18 +73,18 @@ public:
             }
         }
         // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in
-        // each part. Their ends are times of the step, all of them doubles, as they are not halved below finest_relative.
+        // each part. Their ends are times of the step, all of them doubles, as they are not halved below finest_at().
         const bool is_first = leaf.a == 0.0;
         const PairCoefficients& whole = is_first ? pair_.coefficients() : inside;
         const auto in_step = [&](double s) { return time_in_step(whole, s); };
-        const auto is_finest = [&](Interval i) {
-            return i.width() * whole.duration <= std::max(in_step(i.a) * finest_relative, finest_at_zero);
-        };
+        const auto is_finest = [&](Interval i) { return i.width() * whole.duration <= finest_at(in_step(i.a)); };
         OrderedSearch<kind> parts{whole, parameters_, kernel_};
         if (likely) parts.expect(is_first ? time_in_step(inside, *likely) : *likely);
         parts.intervals = search_.intervals;
         IntervalStack stack;
         stack.push(is_first ? leaf : Interval{0.0, 1.0});
+        // Both exact: a power of two, and less than twice the origin, if that is not 0.
+        if (leaf.a < skipped_to_) stack.skip_to((skipped_to_ - whole.origin) / whole.duration, finest_at(skipped_to_) / whole.duration);
         const unsigned limit = std::min(search_.intervals + most_parts, most_intervals);
         const auto part = parts.next_without_certificate(stack, true, limit, is_finest);
         search_.intervals = parts.intervals;
@@ -145,25 +137,62 @@ private:
     /// Lanes tell without asking the search of pairs with leaves that eq. 7 clears, one for each root of the cubic (simd/root_stages.hpp).
     static_assert(laborious_leaves > 3);
 
+    [[nodiscard]] bool is_leaf(Interval i) const { return i.width() <= parameters_.leaf_width; }
+
+    /// See first_contact(): in what waits.
+    double next_contact(unsigned limit)
+    {
+        const auto is_narrowest = [&](Interval i) { return is_leaf(i); };
+        while (const auto found = search_.next_without_certificate(stack_, laborious_ >= laborious_leaves, limit, is_narrowest)) {
+            // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
+            const bool is_wide = !is_leaf(*found);
+            if (is_wide && extensions_ < most_extensions) {
+                ++extensions_;
+                limit = search_.intervals + extension;
+                stack_.push_halves(*found);
+                continue;
+            }
+            const unsigned before = search_.intervals;
+            const bool has_area = pair_.has_area(found->a) || pair_.has_area(found->b);
+            const unsigned most_parts = has_area ? most_intervals_in_leaf : most_in_thin_leaf;
+            const double contact = is_wide ? std::max(found->a, skipped_to_) : contact_in_leaf(*found, most_parts);
+            if (contact == none) {
+                if (search_.intervals != before && skip_along_directions(*found)) limit = limit_after_directions();
+                continue;
+            }
+            leaf_of_answer_ = *found;
+            return contact;
+        }
+        return none;
+    }
+
+    [[nodiscard]] unsigned limit_after_directions() const { return std::min(search_.intervals + most_after_directions, most_intervals); }
+    void go_on_at(double time)
+    {
+        skipped_to_ = time;
+        stack_.skip_to(time, parameters_.leaf_width);
+    }
+
     /// After a laborious leaf. Whether it asked directions.
-    bool skip_along_directions(Interval leaf, IntervalStack& stack)
+    bool skip_along_directions(Interval leaf)
     {
         if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return false;
         const SearchResult apart = apart_until(pair_.coefficients(), parameters_, leaf.b, most_looks_to_skip);
         search_.intervals += apart.intervals;
         directions_help_ = apart.toi - leaf.b >= least_skipped * parameters_.leaf_width;
-        skipped_to_ = apart.toi;
-        stack.skip_to(apart.toi, parameters_.leaf_width);
+        go_on_at(apart.toi);
         return true;
     }
 
-    /// Parts of a leaf are halved to this width relative to their time, the spacing of doubles there, or to finest_at_zero.
-    static constexpr double finest_relative = 0x1p-52;
+    /// Parts of a leaf are halved to the spacing of doubles at their time, or to finest_at_zero.
+    static double finest_at(double time) { return std::max(time * 0x1p-52, finest_at_zero); }
 
     const PairPolynomials<kind>& pair_;
     const SearchParameters& parameters_;
     const IntervalKernel* kernel_;
     OrderedSearch<kind> search_;
+    IntervalStack stack_;  ///< What is still to be looked at.
+    unsigned extensions_ = 0;
     Interval leaf_of_answer_{0.0, 1.0};  ///< Where first_contact() found contact.
     double touch_ = none;                ///< And where it touches in there (touching.hpp).
     bool out_of_parts_ = false;          ///< The last leaf had more than could be examined.

@@ -165,10 +165,13 @@ mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/resul
 mutant 'search: nothing skipped' scalar/leaf_search.hpp 's/\|\| !directions_help_ \|\|/|| directions_help_ ||/' bounded_test
 mutant 'search: no end after directions' scalar/leaf_search.hpp 's/search_\.intervals \+ most_after_directions, most_intervals/most_intervals, most_intervals/' bounded_test
 mutant 'search: eq. 7 of leaves alone' scalar/leaf_search.hpp 's/stack, laborious_ >= laborious_leaves, limit/stack, false, limit/' nothing_invented_test
+mutant 'search: not resumed after directions' scalar/certified_search.cpp 's/\|\| !leaves\.is_apart_after\(first\)/|| true/' nothing_invented_test
+mutant 'search: resumed at the end of the leaf' scalar/leaf_search.hpp 's/if \(stack_\.empty\(\) [^;]*;//' truth_test nothing_invented_test never_zero_test stress
+mutant 'search: parts before a resumed time again' scalar/leaf_search.hpp 's/if \(leaf\.a < skipped_to_\) stack[^;]*;//' nothing_invented_test
 mutant 'search: as many looks as it takes to skip' scalar/separation_search.cpp 's/if \(most < most_looks && most <= pair\.looks\) return[^;]*;//' ordered_search_test
 mutant 'search: after most looks, the time of the next' scalar/separation_search.cpp 's/return \{\.toi = pair\.time, \.intervals = looks\};(\s*\}\s*\})/return {.toi = pair.at, .intervals = looks};$1/' ordered_search_test
 mutant 'search: the leaf that ends with a skip dropped' scalar/interval_stack.hpp 's/peek\(0\)\.b < time/peek(0).b <= time/' ordered_search_test
-mutant 'search: more skipped than directions prove' scalar/leaf_search.hpp 's/skip_to\(apart\.toi,/skip_to(apart.toi + 64 * parameters_.leaf_width,/' truth_test random_pairs_test stress
+mutant 'search: more skipped than directions prove' scalar/leaf_search.hpp 's/skip_to\(time,/skip_to(time + 64 * parameters_.leaf_width,/' truth_test random_pairs_test stress
 mutant 'search: doubts in the units of each axis' kernels/no_distance.hpp 's/broadcast<L>\(0\.5\) \/ power_of_two\(extent\)/broadcast<L>(1.0)/' same_bits_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
 mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && apart_by_area_on<kind>\(pair_, i\.a, i\.b\)\.value\)//' ordered_search_test
