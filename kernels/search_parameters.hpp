@@ -7,10 +7,10 @@
 namespace fastccd {
 
 /// Times are s = t / t_max in [0, 1]. The step is cut into 2^depth leaves of equal width; the answer for a
-/// pair is found in the first leaf that has no certificate of absence, is not passed along directions and, searched on below its width, cannot be cleared
-/// (scalar/leaf_search.hpp): its left end, or that of a part of it, or a time just before the pair meets in it (touching.hpp), or, for
-/// shapes nearly degenerate then, where their distance along directions leads from there (scalar/certified_search.cpp). That makes
-/// it independent of the way it is found.
+/// pair is found in the first leaf that has no certificate of absence, is not passed along directions and, searched on below its width,
+/// cannot be cleared (scalar/leaf_search.hpp): its left end, or that of a part of it, or a time just before the pair meets in it
+/// (touching.hpp), or, for shapes nearly degenerate then, where their distance along directions leads from there, unless certificates lead
+/// on (scalar/certified_search.cpp). That makes it independent of the way it is found.
 struct SearchParameters {
     double t_max;
     ErrorBounds bounds;

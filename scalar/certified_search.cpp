@@ -5,7 +5,7 @@
 // A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses that are apart by more
 // than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up
 // to where it meets (touching.hpp); by halving it further where these do not tell. Where leaf after leaf is cleared by its parts alone,
-// directions keep the pair apart for longer, and where they do not, eq. 7 is asked of wider intervals for a while (skip_along_directions).
+// directions keep the pair apart for longer (skip_along_directions), and eq. 7 is asked of wider intervals from then on.
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation
@@ -45,7 +45,8 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
         if (!leads_on || first > 1.0) break;
         // What is proven around where it began is not before that, hence no farther from it.
         if (result.proof == Proof::none) result.proof = leaves.proof_nearby(first);
-        if (result.proof != Proof::none || resumed == most_resumed || looks == 0 || !leaves.is_apart_after(first)) break;
+        if (result.proof != Proof::none || looks == 0 || resumed == most_resumed || leaves.intervals() >= most_intervals) break;
+        if (!leaves.is_apart_after(first)) break;
         first = leaves.first_contact_after(first);
     }
     result.intervals = leaves.intervals();

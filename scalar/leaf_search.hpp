@@ -23,7 +23,7 @@ public:
     {
     }
 
-    /// Lower bound of the first contact in [0, 1]; `none` if the pair is certainly apart.
+    /// Lower bound of the first contact in [0, 1]; `none` if the pair is certainly apart. To be asked once.
     double first_contact()
     {
         const Interval whole{0.0, 1.0};
@@ -47,7 +47,7 @@ public:
     /// The same after first_contact() has found something, and directions have told that the pair is apart until `time`, later: from there on.
     double first_contact_after(double time)
     {
-        // What waits begins where that ends; but all of the step still waits if it was contact at its start.
+        // What waits begins where that ends; but all of the step still waits if it was contact at its start, or if it is one leaf.
         if (stack_.empty() || stack_.peek(0).a > 0.0) stack_.push(leaf_of_answer_);
         touch_ = none;
         go_on_at(time);
@@ -69,7 +69,7 @@ public:
             if (found.apart.value) return none;
             if (found.present.value && skipped_to_ <= found.time) {
                 touch_ = found.time;
-                return found.lower_bound;
+                return std::max(found.lower_bound, skipped_to_);
             }
         }
         // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in
@@ -83,7 +83,7 @@ public:
         parts.intervals = search_.intervals;
         IntervalStack stack;
         stack.push(is_first ? leaf : Interval{0.0, 1.0});
-        // Both exact: a power of two, and less than twice the origin, if that is not 0.
+        // Both exact: by a power of two, and of what is at most twice the origin, if that is not 0.
         if (leaf.a < skipped_to_) stack.skip_to((skipped_to_ - whole.origin) / whole.duration, finest_at(skipped_to_) / whole.duration);
         const unsigned limit = std::min(search_.intervals + most_parts, most_intervals);
         const auto part = parts.next_without_certificate(stack, true, limit, is_finest);

@@ -99,7 +99,9 @@ TEST(Bounded, MomentsWithoutAreaAreSkipped)
                 moments.add(kind, pairs, tolerance);
             }
         moments.report("moments without area", tolerance);
-        if (tolerance == 1e-9) EXPECT_LT(moments.largest, scalar::most_intervals / 2) << "without directions, some of these come to the cap";
+        if (tolerance == 1e-9) {
+            EXPECT_LT(moments.largest, scalar::most_intervals / 2) << "without directions, some of these come to the cap";
+        }
         EXPECT_LE(moments.at_cap, moments.pairs / 1000) << "without an end after directions, one in 130 does at 1e-12";
     }
 }

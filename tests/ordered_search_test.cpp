@@ -19,6 +19,7 @@
 
 #include "generators.hpp"
 #include "narrow_phase.hpp"
+#include "oracle/exact_ccd.hpp"
 #include "thin_pairs.hpp"
 
 namespace fastccd::testing {
@@ -324,6 +325,37 @@ TEST(OrderedSearch, SkippingLeavesWhatHoldsTheTime)
     EXPECT_EQ(first(0.5).b, 0.5) << "contact at the very time is in the interval that ends with it, too";
     EXPECT_EQ(first(1.0), (scalar::Interval{0.75, 1.0})) << "and at 1 in no other";
     EXPECT_TRUE(after_skipping_to(std::numeric_limits<double>::infinity()).empty());
+}
+
+/// Where directions end and a certificate holds again, the search goes on in the very leaf that it had answered with: here the first one
+/// holds the contact, too, or all of the step is left.
+TEST(OrderedSearch, ResumesInWhatItAnsweredWith)
+{
+    const oracle::Pair vertex_face{{{0x1.fa7a0000018p-3, -0x1.99027ffffe8p-3, -0x1.ea586000002p-1},
+                                    {0x1.fa7a000002p-3, -0x1.9902800001p-3, -0x1.ea586000006p-1},
+                                    {0x1.fa7a000002p-3, -0x1.99027fffffp-3, -0x1.ea586000004p-1},
+                                    {0x1.fa7a000002p-3, -0x1.99028001c4e9ap-3, -0x1.ea5860004f01p-1},
+                                    {0x1.fa7a0000018p-3, -0x1.99027ffffe8p-3, -0x1.ea586000002p-1},
+                                    {0x1.fa79fefbf3456p-3, -0x1.9902866d49fd4p-3, -0x1.ea586000006p-1},
+                                    {0x1.fa7a000001p-3, -0x1.9902878428b3fp-3, -0x1.ea585d4c8ba52p-1},
+                                    {-0x1.d809ce02becbcp-2, 0x1.773aa3c8e4cccp-1, -0x1.8b23e9ae37e44p-2}}};
+    const oracle::Pair edge_edge{{{-0x1.01600b5cf32aap-1, -0x1.f7e7351ea52cdp-1, 0x1.d255b82cff41cp-22},
+                                  {-0x1.015ffffffdp-1, -0x1.f7e7400001p-1, 0x1p-40},
+                                  {-0x1.0160000003p-1, -0x1.f7e73fffffp-1, 0x1p-39},
+                                  {-0x1.015ffffffep-1, -0x1.f7e7400001p-1, -0x1.8p-40},
+                                  {-0x1.0160000003p-1, -0x1.f7e73ffffdp-1, -0x1p-41},
+                                  {-0x1.015ffffffdp-1, -0x1.f7e7400002p-1, -0x1p-41},
+                                  {-0x1.015ffffffdp-1, -0x1.f7e7400002p-1, -0x1p-41},
+                                  {-0x1.015fffebf821p-1, -0x1.f7e7403db7b1cp-1, -0x1.39972c4c9a114p-28}}};
+    for (const auto& [kind, pair] : {std::pair{oracle::Kind::vertex_face, vertex_face}, std::pair{oracle::Kind::edge_edge, edge_edge}}) {
+        const oracle::Verdict truth = oracle::exact_ccd(kind, pair);
+        ASSERT_TRUE(truth.contact);
+        for (const double tolerance : {1.0, 1e-3, 1e-6, 1e-9, 1e-12}) {
+            const SearchParameters parameters{tolerance, 1.0, false};
+            const double toi = scalar::certified_search(pair_kind(kind), pair[0].data(), parameters).toi;
+            EXPECT_LE(toi, truth.t_lo) << kind_name(kind) << ", " << tolerance;
+        }
+    }
 }
 
 }  // namespace
