@@ -358,5 +358,39 @@ TEST(OrderedSearch, ResumesInWhatItAnsweredWith)
     }
 }
 
+template <PairKind kind>
+std::size_t later_than_proven_nearby(const std::vector<oracle::Pair>& pairs, const SearchParameters& parameters)
+{
+    std::size_t later = 0;
+    for (const oracle::Pair& pair : pairs) {
+        const scalar::PairPolynomials<kind> polynomials{pair[0].data(), parameters};
+        if (polynomials.apart()) continue;
+        scalar::LeafSearch<kind> leaves{polynomials, parameters};
+        const double first = leaves.first_contact();
+        if (first > 1.0 || leaves.proof_of_contact(first) != scalar::Proof::nearby || !leaves.in_doubt(first)) continue;
+        const double apart = scalar::apart_until(polynomials.coefficients(), parameters, first).toi;
+        const scalar::SearchResult found = scalar::certified_search(kind, pair[0].data(), parameters);
+        EXPECT_EQ(found.toi, parameters.time(apart)) << lossless(pair);
+        EXPECT_EQ(found.proof, scalar::Proof::nearby) << lossless(pair);
+        later += first < apart;
+    }
+    return later;
+}
+
+/// Contact is certain, but not where it was found: directions lead on to where it is.
+TEST(OrderedSearch, ProvenNearbyMayStillBeInDoubt)
+{
+    std::size_t later = 0;
+    std::vector<oracle::Pair> pairs;
+    for (const double tolerance : {1e-3, 1e-9}) {
+        const SearchParameters parameters{tolerance, 1.0, false};
+        generate("mixed_exponent", oracle::Kind::vertex_face, 71, 800, pairs);
+        later += later_than_proven_nearby<PairKind::vertex_face>(pairs, parameters);
+        generate("mixed_exponent", oracle::Kind::edge_edge, 71, 800, pairs);
+        later += later_than_proven_nearby<PairKind::edge_edge>(pairs, parameters);
+    }
+    EXPECT_GT(later, 5u) << "nothing was tested";
+}
+
 }  // namespace
 }  // namespace fastccd::testing
