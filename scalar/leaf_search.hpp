@@ -38,7 +38,8 @@ public:
         return next_contact(most_intervals);
     }
 
-    /// Whether some certificate tells that the pair is apart right after `time`, in what is far less than a leaf.
+    /// Whether some certificate tells that the pair is apart right after `time`: throughout a thousandth of a leaf, or 2^-40 of the step in wide
+    /// leaves. A choice: whether the search goes on there, not what it then finds.
     [[nodiscard]] bool is_apart_after(double time) const
     {
         return pair_.apart({time, std::min(time + std::min(0x1p-10 * parameters_.leaf_width, 0x1p-40), 1.0)});

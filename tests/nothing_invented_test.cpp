@@ -245,7 +245,7 @@ TEST(NothingInvented, ProvenLater)
     EXPECT_EQ(worst.reported, 1u);
 }
 
-/// The farthest of millions of pairs: a vertex whose nearest point of a thin face computed positions do not tell.
+/// The farthest that hill climbing came to, of millions of pairs.
 TEST(NothingInvented, FoundByHillClimbing)
 {
     const oracle::Pair pair{{{-0x1.2c002b9f081e3p+2, -0x1.2c006a5fbb6cap+1, -0x1.2bffe2df9ccc9p+2},
@@ -306,8 +306,8 @@ TEST(NothingInvented, TellsWhereOnlyAreasDo)
     }
 }
 
-/// Next to contact at time 0, where only directions tell them apart, and no more where these end, 4.5e-8 s apart (flat) and 1.4e-10 and 2.9e-10 s with
-/// an ordinary shape: there certificates hold again, throughout the rest of the step.
+/// Directions tell that these are apart for a while, and end where they are 4.5e-8 s apart (flat), or 1.4e-10 s and 2.9e-10 s with an ordinary
+/// shape: there certificates hold again.
 TEST(NothingInvented, CertificatesLeadOnWhereDirectionsEnd)
 {
     const oracle::Pair flat{{{-0x1.f9e8cf87e9b99p-54, -0x1.0b85fcfbdaaa9p-9, -0x1.4dbe5bda817a1p-86},

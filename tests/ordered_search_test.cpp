@@ -377,7 +377,7 @@ std::size_t later_than_proven_nearby(const std::vector<oracle::Pair>& pairs, con
     return later;
 }
 
-/// Contact is certain, but not where it was found: directions lead on to where it is.
+/// Contact is certain near where it was found, but may be later than there: directions lead on towards it.
 TEST(OrderedSearch, ProvenNearbyMayStillBeInDoubt)
 {
     std::size_t later = 0;
