@@ -73,7 +73,7 @@ struct Column {
     const char* name;
 };
 
-struct Row {
+struct HeatRow {
     std::string label;
     std::vector<const Json*> sets;  ///< One for each column; null where there is none.
 };
@@ -100,12 +100,12 @@ std::string one_digit(double value)
     return text;
 }
 
-Scale scale_of(const Measure& one, const std::vector<Row>& rows)
+Scale scale_of(const Measure& one, const std::vector<HeatRow>& rows)
 {
     Scale scale;
     for (const Measure& measure : measures) {
         if (std::string_view{measure.scale} != one.scale) continue;
-        for (const Row& row : rows) {
+        for (const HeatRow& row : rows) {
             for (const Json* const set : row.sets) {
                 const std::optional<double> value = set == nullptr ? std::nullopt : measure.value(*set);
                 if (!value || *value <= 0) continue;
@@ -118,16 +118,16 @@ Scale scale_of(const Measure& one, const std::vector<Row>& rows)
 }
 
 Picture heat_map(const std::string& name, const std::string& title, const std::vector<Column>& columns,
-                 const std::vector<Row>& rows)
+                 const std::vector<HeatRow>& rows)
 {
     constexpr double top = 84, row_height = 15, gap = 5;
     std::size_t longest = 0;
-    for (const Row& row : rows) longest = std::max(longest, row.label.size());
+    for (const HeatRow& row : rows) longest = std::max(longest, row.label.size());
     const double left = std::max(90.0, 16 + 7.2 * static_cast<double>(longest));
     std::vector<const Measure*> shown;  // those that are known of any set
     for (const Measure& measure : measures) {
         const auto known = [&](const Json* set) { return set != nullptr && measure.value(*set); };
-        if (std::ranges::any_of(rows, [&](const Row& row) { return std::ranges::any_of(row.sets, known); }))
+        if (std::ranges::any_of(rows, [&](const HeatRow& row) { return std::ranges::any_of(row.sets, known); }))
             shown.push_back(&measure);
     }
     const double group = (Svg::width - 6 - left) / static_cast<double>(shown.size());
@@ -168,11 +168,11 @@ Picture heat_map(const std::string& name, const std::string& title, const std::v
 }
 
 /// The row of that label, made if need be.
-Row& row_of(std::vector<Row>& rows, const std::string& label, std::size_t columns)
+HeatRow& row_of(std::vector<HeatRow>& rows, const std::string& label, std::size_t columns)
 {
-    const auto found = std::ranges::find(rows, label, &Row::label);
+    const auto found = std::ranges::find(rows, label, &HeatRow::label);
     if (found != rows.end()) return *found;
-    return rows.emplace_back(Row{label, std::vector<const Json*>(columns, nullptr)});
+    return rows.emplace_back(HeatRow{label, std::vector<const Json*>(columns, nullptr)});
 }
 
 std::string without_prefix(const std::string& text, std::string_view prefix)
@@ -187,7 +187,7 @@ std::vector<Picture> heat_maps(const Json& hard_cases)
     const std::vector<Column> by_numbers{
         {"v", "vertex-face, double"}, {"e", "edge-edge, double"}, {"v", "vertex-face, float"}, {"e", "edge-edge, float"}};
     const std::vector<Column> by_kind{{"vf", "vertex-face"}, {"ee", "edge-edge"}};
-    std::vector<Row> made, published, queries;
+    std::vector<HeatRow> made, published, queries;
     for (const Json& set : hard_cases.at("sets")) {
         std::string name = set.at("name");
         const std::size_t kind = set.at("kind") == "vf" ? 0 : 1;
@@ -198,7 +198,7 @@ std::vector<Picture> heat_maps(const Json& hard_cases)
                 .sets.at(kind) = &set;
             continue;
         }
-        std::vector<Row>& rows = set.at("source") == "generated" ? made : published;
+        std::vector<HeatRow>& rows = set.at("source") == "generated" ? made : published;
         name = without_prefix(name, "hardcases/");
         const bool single = name.starts_with("f32_");
         const std::string family = without_prefix(name, "f32_").substr(0, name.size() - (single ? 7 : 3));

@@ -32,17 +32,17 @@ double deviations(std::size_t count, std::size_t pairs, std::size_t paper_count)
 }
 
 /// One row: the sums over all pieces, in every repeat and on one and on all threads.
-struct Row {
+struct PaperRow {
     Summary summary;
     std::vector<std::array<double, 2>> seconds;
 };
 
-std::array<Row, tolerances.size()> answer_all(const Plan& plan, PairKind kind, ReportProgress& progress)
+std::array<PaperRow, tolerances.size()> answer_all(const Plan& plan, PairKind kind, ReportProgress& progress)
 {
     const std::size_t repeats = std::min<std::size_t>(plan.repeats(), 3);
     const int all_threads = tbb::this_task_arena::max_concurrency();
-    std::array<Row, tolerances.size()> rows;
-    for (Row& row : rows) row.seconds.resize(repeats);
+    std::array<PaperRow, tolerances.size()> rows;
+    for (PaperRow& row : rows) row.seconds.resize(repeats);
 
     PairBuffer buffer{std::min(chunk_pairs, plan.pairs)};
     std::vector<double> toi(buffer.size());
@@ -73,7 +73,7 @@ std::array<Row, tolerances.size()> answer_all(const Plan& plan, PairKind kind, R
     return rows;
 }
 
-Json row_json(const Plan& plan, PairKind kind, std::size_t t, const Row& row)
+Json row_json(const Plan& plan, PairKind kind, std::size_t t, const PaperRow& row)
 {
     Timing one{Timing::Clock::processor}, all;
     for (const auto& seconds : row.seconds) {
