@@ -12,7 +12,7 @@ quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; fail "$*"; }; }
 # build_with BUILD_SHARED_LIBS: in one folder for both, as few objects differ.
 build_with() {
   quietly env CXX="$cxx" cmake -S "$tests/consumer/add_subdirectory" -B "$work/build" -DFASTCCD_SOURCE="$source" -DFASTCCD_AVX=OFF \
-    -DBUILD_SHARED_LIBS="$1"
+    -DFASTCCD_WERROR=ON -DBUILD_SHARED_LIBS="$1"
   quietly cmake --build "$work/build"
   "$work/build/two_meshes" | diff "$tests/consumer/expected.txt" -
 }

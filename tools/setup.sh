@@ -9,8 +9,8 @@ say() { printf '\n== %d:%02d %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; }
 
 library_packages=(g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev)
 tool_packages=(libcli11-dev libfmt-dev nlohmann-json3-dev libgmp-dev)
-# dpkg-dev, file: for cpack; binutils: for what the libraries export.
-test_packages=(libgtest-dev libeigen3-dev python3 python3-numpy dpkg-dev file binutils)
+# dpkg-dev, file: for cpack; binutils: for what the libraries export; ccache: what is compiled twice.
+test_packages=(libgtest-dev libeigen3-dev python3 python3-numpy dpkg-dev file binutils ccache)
 bench_packages=(libbenchmark-dev)
 
 # install_packages NAME...: installs what is missing, and says so.

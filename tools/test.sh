@@ -15,6 +15,10 @@ fi
 install_packages "${library_packages[@]}" "${tool_packages[@]}" "${test_packages[@]}" "${bench_packages[@]}"
 # To look at the page of `fastccd report`; without it one test skips.
 install_packages chromium || printf '\n!! No chromium: the page of the report is NOT LOOKED AT.\n' >&2
+# For subdirectory_test, which builds the library once more within another project, with the same commands for most of it.
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+CCACHE_DIR=$(realpath -m "$build")/ccache
+export CCACHE_DIR
 configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=ON -DFASTCCD_WERROR=ON
 
 data=${FASTCCD_DATA:-$root/../shared/data}
@@ -23,6 +27,7 @@ say "testing"
 ctest --test-dir "$build" --output-on-failure --parallel "$(nproc)" "$@"
 $all || exit 0
 
+unset CMAKE_CXX_COMPILER_LAUNCHER CCACHE_DIR
 source "$root/tools/test_all.sh"
 test_sanitized_and_fuzz
 test_races
