@@ -8,8 +8,11 @@
 #include <memory>
 #include <random>
 
+#include <halves_certificate.hpp>
+#include <kernel_table.hpp>
 #include <leaf_search.hpp>
-#include <run_tile.hpp>
+#include <part_certificates.hpp>
+#include <projected_inclusion.hpp>
 
 #include "amount.hpp"
 #include "bounds/measured_bound.hpp"
@@ -291,7 +294,7 @@ void expect_proofs(const std::vector<oracle::Pair>& pairs, const std::string& fa
     const SearchParameters parameters{tolerance, t_max, true};
     const PairView view = interleaved(pairs);
     const PairSource source{&view, {}, view.size()};
-    portable::run_tile<double>({kind, &source, 0, pairs.size(), &parameters, 1.0}, scratch);
+    kernel_table(Isa::scalar)->run_tile({kind, &source, 0, pairs.size(), &parameters, 1.0}, scratch);
     std::mt19937_64 bits{63};
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (is_set(scratch.is_undecided, i)) continue;
