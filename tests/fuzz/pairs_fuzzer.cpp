@@ -1,5 +1,5 @@
 // Any bytes as pairs, both kinds: a byte chooses tolerance and t_max, then come 24 doubles a pair; a double after the last pair
-// is a minimum separation, any other rest asks for the exact verdict. Every instruction set gives the bits of the certified
+// is a minimum separation, a single byte asks for the exact verdict. Every instruction set gives the bits of the certified
 // search, for packed pairs and for all pairs of a mesh made of their points; a time is in [0, t_max] or infinite, and NaN exactly
 // where a coordinate is not finite; the exact verdict takes contacts away and makes no time earlier.
 #include <algorithm>
@@ -93,6 +93,16 @@ void check_mesh(const std::vector<double>& coordinates, const Options& options)
     testing::require(std::memcmp(found.data(), expected.data(), found.size() * sizeof(double)) == 0);
 }
 
+/// Doubles of any bytes are hundreds of binades apart. Rational arithmetic takes a second for those; exact_test has a family of them.
+bool within_few_binades(const std::vector<double>& coordinates)
+{
+    constexpr double range = 0x1p128;
+    double smallest = INFINITY, largest = 0.0;
+    for (const double x : coordinates)
+        if (x != 0.0 && std::isfinite(x)) smallest = std::min(smallest, std::abs(x)), largest = std::max(largest, std::abs(x));
+    return largest / range <= smallest;
+}
+
 void check_exact(PairKind kind, const std::vector<double>& coordinates, Options options)
 {
     const std::vector<double> possible = times(kind, coordinates, options);
@@ -123,7 +133,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(PairKind::edge_edge, coordinates, options);
     check_mesh<VertexFace>(coordinates, options);
     check_mesh<EdgeEdge>(coordinates, options);
-    if (rest != 0 && rest != sizeof(double)) {
+    if (rest == 1 && within_few_binades(coordinates)) {
         check_exact(PairKind::vertex_face, coordinates, options);
         check_exact(PairKind::edge_edge, coordinates, options);
     }
