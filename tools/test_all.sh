@@ -5,9 +5,8 @@ lacks_avx512() { [[ $("$build/tests/fastccd_digest" 1 2>&1) == *'lacks avx512'* 
 # For instrumented builds, whose kernel for AVX-512 takes longest of all to compile; without AVX-512 only the ordinary one is run, emulated.
 avx512_if_here() { lacks_avx512 && echo OFF || echo ON; }
 
-# AddressSanitizer and UndefinedBehaviorSanitizer on all tests, and some seconds of fuzzing in the same build. Left out:
-# oracle_test and report_test, four minutes each or more of arithmetic in the oracle, none of the library's; report_page_test
-# runs the report itself.
+# AddressSanitizer and UndefinedBehaviorSanitizer on all tests but a few (tests/CMakeLists.txt says which), and some seconds of fuzzing in
+# the same build.
 test_sanitized_and_fuzz() {
   local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized avx512
   avx512=$(avx512_if_here)
@@ -15,7 +14,7 @@ test_sanitized_and_fuzz() {
   CC=clang CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
     -DFASTCCD_FUZZERS=ON -DFASTCCD_AVX512=$avx512 -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
   say "testing with sanitizers"
-  ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)" --exclude-regex '^(oracle_test|report_test)$'
+  ctest --test-dir "$sanitized" --output-on-failure --parallel "$(nproc)"
 
   say "fuzzing, $seconds s each, two at a time"
   local beside
