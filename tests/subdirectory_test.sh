@@ -9,7 +9,7 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; exit 1; }
 quietly() { "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; fail "$*"; }; }
 
-# build_with BUILD_SHARED_LIBS: in one folder for both, as few objects differ.
+# build_with BUILD_SHARED_LIBS: in one folder for both, as few objects differ; by the commands of tools/test.sh, for ccache: hence the warnings.
 build_with() {
   quietly env CXX="$cxx" cmake -S "$tests/consumer/add_subdirectory" -B "$work/build" -DFASTCCD_SOURCE="$source" -DFASTCCD_AVX=OFF \
     -DFASTCCD_WERROR=ON -DBUILD_SHARED_LIBS="$1"
