@@ -27,10 +27,10 @@ function(fastccd_add_isa_kernels target)
 
   set(optimised -O3)
   if(FASTCCD_SANITIZE)
-    set(optimised -O1)
+    set(optimised -O1)  # inlines as much, and takes clang a quarter to a half less time
   endif()
-  if(FASTCCD_SANITIZE MATCHES undefined)
-    # To ask before each access whether an address wraps around takes half of the time to compile, and what AddressSanitizer sees is more.
+  if(FASTCCD_SANITIZE MATCHES address AND FASTCCD_SANITIZE MATCHES undefined)
+    # To ask before each access whether its address wraps around takes half of what is left. AddressSanitizer sees the access itself.
     list(APPEND optimised -fno-sanitize=pointer-overflow)
   endif()
 

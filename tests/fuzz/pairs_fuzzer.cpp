@@ -1,5 +1,5 @@
 // Any bytes as pairs, both kinds: a byte chooses tolerance and t_max, then come 24 doubles a pair; a double after the last pair
-// is a minimum separation, a single byte asks for the exact verdict. Every instruction set gives the bits of the certified
+// is a minimum separation, a single byte asks for the exact verdict where that is quick. Every instruction set gives the bits of the certified
 // search, for packed pairs and for all pairs of a mesh made of their points; a time is in [0, t_max] or infinite, and NaN exactly
 // where a coordinate is not finite; the exact verdict takes contacts away and makes no time earlier.
 #include <algorithm>
@@ -93,7 +93,8 @@ void check_mesh(const std::vector<double>& coordinates, const Options& options)
     testing::require(std::memcmp(found.data(), expected.data(), found.size() * sizeof(double)) == 0);
 }
 
-/// Doubles of any bytes are hundreds of binades apart. Rational arithmetic takes a second for those; exact_test has a family of them.
+/// Doubles of any bytes are hundreds of binades apart. Rational arithmetic takes a second for those; exact_test has a family of
+/// them. 128 is a choice: ordinary coordinates and their mutated exponents.
 bool within_few_binades(const std::vector<double>& coordinates)
 {
     constexpr double range = 0x1p128;
