@@ -27,20 +27,32 @@ FASTCCD_INLINE RelativeMotion<L> with_normalized_extents(const RelativeMotion<L>
 /// that is not apart, but at time 0. Of pairs that stay in one plane a look tells nearly all so; the whole of it would report more near misses.
 inline constexpr double share_of_resolution = 0.25;
 
-/// Whether the direction in which the pair is farthest apart at s proves nothing there, or the pair is as close as that. So it is at most
-/// 2^2 sqrt(u) of its size apart at s, as where the search along directions stops (tests/nothing_invented_test.cpp says why). Of the motion as
-/// it is searched. A function of its own: much code, seldom run.
+/// What the direction in which a pair is farthest apart at a time shows. None: it proves nothing there, or the pair is as close as that.
+template <class L>
+struct DirectionAt {
+    LaneMask<L> none;
+    L until;  ///< Where it shows something: the pair is apart from that time until then.
+};
+
+/// Of a motion with_normalized_extents.
+template <PairKind kind, class L>
+FASTCCD_INLINE DirectionAt<L> direction_at(const RelativeMotion<L>& normalized, const Extents<L>& e, L s, const ErrorBounds& bounds)
+{
+    const LookResult<L> seen = look<kind>(normalized, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
+    const LaneMask<L> proven = certified_at(seen.reach, s);
+    if (Lane<L>::bits(proven) == 0) return {!proven, seen.reach.high};
+    const L close = broadcast<L>(share_of_resolution * SeparationParameters::resolution) * sum(e);
+    const L distance = sqrt(square_distance<kind>(seen.at.r, seen.separation));
+    return {!(proven & (less_equal(s, broadcast<L>(0.0)) | less(close, distance))), seen.reach.high};
+}
+
+/// Whether directions show nothing at s: the pair is as close as where the search along them stops (SeparationBounds::beyond()). Of the motion as it
+/// is searched. A function of its own: much code, seldom run.
 template <PairKind kind, class L>
 __attribute__((noinline)) LaneMask<L> no_distance_at(const RelativeMotion<L>& r, L s, const ErrorBounds& bounds)
 {
     const RelativeMotion<L> normalized = with_normalized_extents(r);
-    const Extents<L> e = extents(normalized);
-    const LookResult<L> seen = look<kind>(normalized, e, s, SeparationParameters{}, SeparationBounds{bounds.rho});
-    const LaneMask<L> proven = certified_at(seen.reach, s);
-    if (Lane<L>::bits(proven) == 0) return !proven;
-    const L close = broadcast<L>(share_of_resolution * SeparationParameters::resolution) * sum(e);
-    const L distance = sqrt(square_distance<kind>(seen.at.r, seen.separation));
-    return !(proven & (less_equal(s, broadcast<L>(0.0)) | less(close, distance)));
+    return direction_at<kind>(normalized, extents(normalized), s, bounds).none;
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

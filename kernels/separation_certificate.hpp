@@ -8,7 +8,7 @@
 #pragma once
 
 #include <certificates.hpp>
-#include <separating_direction.hpp>
+#include <feature_directions.hpp>
 #include <separation_bound.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
@@ -45,6 +45,13 @@ FASTCCD_INLINE L threshold_along(const Vector3<L>& n, const Extents<L>& e, const
 {
     const L s = (abs(n.x) * e.x + abs(n.y) * e.y) + abs(n.z) * e.z;
     return (broadcast<L>(parameters.threshold) + broadcast<L>(bound) * s) + broadcast<L>(separation_floor);
+}
+
+/// A computed gap above this is certified at its time.
+template <class L>
+FASTCCD_INLINE L surely_certified(const Extents<L>& e, const SeparationParameters& parameters)
+{
+    return broadcast<L>(parameters.threshold) + broadcast<L>(SeparationBounds::surely_certified()) * sum(e);
 }
 
 /// Calls visit(height) for each pair of vertices, with the height of the second over the first; height(i) gives that of
@@ -130,7 +137,7 @@ FASTCCD_INLINE LookResult<L> look(const RelativeMotion<L>& r, const Extents<L>& 
 {
     LookResult<L> seen;
     seen.at = positions(r, time);
-    seen.separation = separation<kind>(seen.at.r);
+    seen.separation = separation_beyond<kind>(seen.at.r, surely_certified(e, parameters));
     const Vector3<L>& n = seen.separation.n;
     seen.reach = reach<kind>(r, n, threshold_along(n, e, parameters, bounds.height(kind)));
     return seen;

@@ -105,7 +105,14 @@ struct StepOutcome {
     LaneMask<L> left;     ///< Of the others: to the scalar search.
 };
 
-/// What follows from a look at the pair, at the time for the next one: `separation` is what it has shown, of positions(pair.r, pair.at).
+/// The look at the pair at the time for the next one.
+template <PairKind kind, class L>
+FASTCCD_INLINE Separation<L> next_look(const SeparationRecord<L>& pair, const SearchParameters& parameters)
+{
+    return separation_beyond<kind>(positions(pair.r, pair.at).r, surely_certified(pair.extents, parameters.separation));
+}
+
+/// What follows from next_look(), which has shown `separation`.
 template <PairKind kind, class L>
 FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L>& separation, const SearchParameters& parameters, double limit)
 {

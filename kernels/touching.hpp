@@ -262,6 +262,7 @@ FASTCCD_INLINE Touch<L> touch_in(const PolynomialsOf<L>& leaf, const PairCoeffic
         if (Lane<L>::bits(asked) == 0) return found;
         const LikelyTouch<L> likely = touch_by_certificates<kind>(leaf, until, asked);
         found.likely = likely.time;
+        found.lower_bound = select<L>(asked, earlier_in_step(leaf, until.end), found.lower_bound);
         look_at(likely, true);
     }
     return found;

@@ -4,13 +4,14 @@
 //
 // A leaf in which contact cannot be proven either is searched on below E_tol: this removes near misses that are apart by more
 // than rounding, whatever E_tol, and gives degenerate contacts a tighter lower bound. By certificates that lead through it or up
-// to where it meets (touching.hpp); by halving it further where these do not tell. Where leaf after leaf is cleared by its parts alone,
-// directions keep the pair apart for longer (skip_along_directions), and eq. 7 is asked of wider intervals from then on.
+// to where it meets (touching.hpp); where the shape amplifies rounding, along directions, once for a pair (meeting_along_directions.hpp); by
+// halving it further where these do not tell. Where leaf after leaf is cleared by its parts alone, directions keep the pair apart for longer
+// (skip_along_directions), and eq. 7 is asked of wider intervals from then on.
 //
 // Volumes and areas of faces, edges and angles that nearly vanish are lost in rounding while the pair is still apart by sqrt(u) or
 // cbrt(u) times its size, distances along a direction are not: where shapes are like that, and at a cap, the search with a separation
 // goes on from there, without any separation, but where a first look in that direction has told that it would not (no_distance.hpp). It
-// tells apart what computed positions tell apart. Where it ends later than it began, certificates may lead on again: the first search resumes.
+// tells apart what computed positions tell apart.
 #include <certified_search.hpp>
 
 #include <algorithm>
@@ -34,20 +35,13 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
     LeafSearch<kind> leaves{pair, parameters, lanes};
     double first = leaves.first_contact();
-    auto looks = static_cast<unsigned>(most_looks);
-    for (unsigned resumed = 0; first <= 1.0; ++resumed) {
+    if (first <= 1.0) {
         result.proof = leaves.proof_of_contact(first);
-        if (result.proof == Proof::leaf || !leaves.in_doubt(first)) break;
-        const SearchResult apart = apart_until(pair.coefficients(), parameters, first, looks);
-        looks -= std::min(looks, apart.intervals);
-        const bool leads_on = first < apart.toi;
-        first = apart.toi;
-        if (!leads_on || first > 1.0) break;
-        // What is proven around where it began is not before that, hence no farther from it.
-        if (result.proof == Proof::none) result.proof = leaves.proof_nearby(first);
-        if (result.proof != Proof::none || looks == 0 || resumed == most_resumed || leaves.intervals() >= most_intervals) break;
-        if (!leaves.is_apart_after(first)) break;
-        first = leaves.first_contact_after(first);
+        if (result.proof != Proof::leaf && leaves.in_doubt(first)) {
+            first = apart_until(pair.coefficients(), parameters, first).toi;
+            // What is proven around where it began is not before that, hence no farther from it.
+            if (first <= 1.0 && result.proof == Proof::none) result.proof = leaves.proof_nearby(first);
+        }
     }
     result.intervals = leaves.intervals();
     if (first > 1.0) return {.toi = result.toi, .intervals = result.intervals};

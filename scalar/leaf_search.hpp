@@ -28,6 +28,7 @@ public:
     {
         const Interval whole{0.0, 1.0};
         search_.intervals = 1;
+        may_ask_directions_ = true;
         stack_.push_halves(whole);  // it has no certificate
         if (pair_.in_contact_at_start(parameters_.leaf_width)) {
             leaf_of_answer_ = {0.0, parameters_.leaf_width};
@@ -36,23 +37,6 @@ public:
         }
         if (is_leaf(whole)) return pair_.apart(whole) ? none : contact_in_leaf(whole);
         return next_contact(most_intervals);
-    }
-
-    /// Whether some certificate tells that the pair is apart right after `time`: throughout a thousandth of a leaf, or 2^-40 of the step in wide
-    /// leaves. A choice: whether the search goes on there, not what it then finds.
-    [[nodiscard]] bool is_apart_after(double time) const
-    {
-        return pair_.apart({time, std::min(time + std::min(0x1p-10 * parameters_.leaf_width, 0x1p-40), 1.0)});
-    }
-
-    /// The same after first_contact() has found something, and directions have told that the pair is apart until `time`, later: from there on.
-    double first_contact_after(double time)
-    {
-        // What waits begins where that ends; but all of the step still waits if it was contact at its start, or if it is one leaf.
-        if (stack_.empty() || stack_.peek(0).a > 0.0) stack_.push(leaf_of_answer_);
-        touch_ = none;
-        go_on_at(time);
-        return next_contact(limit_after_directions());
     }
 
     /// For a leaf without a certificate: `none` if it is apart after all; its left end, but for the first leaf, if contact is
@@ -71,6 +55,10 @@ public:
             if (found.present.value && skipped_to_ <= found.time) {
                 touch_ = found.time;
                 return std::max(found.lower_bound, skipped_to_);
+            }
+            // Not where eq. 7 tells that there is no contact in the leaf, which lanes know without asking the search.
+            if (may_ask_directions_ && !pair_.apart_by_area(leaf)) {
+                if (const auto answer = contact_along_directions(leaf, std::max(found.lower_bound, skipped_to_))) return *answer;
             }
         }
         // Parts are shares of the leaf, or of the step in the first leaf: what is apart at time 0 by no more than its bounds is to be so in
@@ -138,6 +126,36 @@ private:
     /// Lanes tell without asking the search of pairs with leaves that eq. 7 clears, one for each root of the cubic (simd/root_stages.hpp).
     static_assert(laborious_leaves > 3);
 
+    /// Once for a pair: from `start`, in a leaf, where its shape amplifies rounding, as far as directions lead. If they end where it meets, that is
+    /// the answer; `none` if they lead on beyond the leaf, or to the end.
+    std::optional<double> contact_along_directions(Interval leaf, double start)
+    {
+        const AlongDirections<double> along = pair_.along_directions(start, parameters_.bounds);
+        if (!along.asked.value) return std::nullopt;
+        may_ask_directions_ = false;
+        double time = along.apart.value ? none : along.time;
+        bool ended = true;
+        if (along.goes_on.value) {
+            const SearchResult apart = apart_until(pair_.coefficients(), parameters_, time, most_looks_to_skip);
+            search_.intervals += apart.intervals;
+            time = apart.toi;
+            ended = apart.intervals < most_looks_to_skip;
+        }
+        if (time == none) {
+            stack_.drop(stack_.size());
+            return none;
+        }
+        if (ended && pair_.meets_after_directions(time, parameters_.leaf_width)) {
+            const double left = leaf_start(time, parameters_.leaf_width);
+            leaf_of_answer_ = {left, left + parameters_.leaf_width};
+            if (leaf.b <= time) skipped_to_ = time;
+            return touch_ = time;
+        }
+        go_on_at(time);
+        if (leaf.b <= time) return none;
+        return std::nullopt;
+    }
+
     [[nodiscard]] bool is_leaf(Interval i) const { return i.width() <= parameters_.leaf_width; }
 
     /// See first_contact(): in what waits.
@@ -156,12 +174,12 @@ private:
             const unsigned before = search_.intervals;
             const bool has_area = pair_.has_area(found->a) || pair_.has_area(found->b);
             const unsigned most_parts = has_area ? most_intervals_in_leaf : most_in_thin_leaf;
+            leaf_of_answer_ = *found;
             const double contact = is_wide ? std::max(found->a, skipped_to_) : contact_in_leaf(*found, most_parts);
             if (contact == none) {
                 if (search_.intervals != before && skip_along_directions(*found)) limit = limit_after_directions();
                 continue;
             }
-            leaf_of_answer_ = *found;
             return contact;
         }
         return none;
@@ -196,6 +214,7 @@ private:
     unsigned extensions_ = 0;
     Interval leaf_of_answer_{0.0, 1.0};  ///< Where first_contact() found contact.
     double touch_ = none;                ///< And where it touches in there (touching.hpp).
+    bool may_ask_directions_ = false;    ///< Before parts; in a search in order, until asked.
     bool out_of_parts_ = false;          ///< The last leaf had more than could be examined.
     unsigned laborious_ = 0;             ///< Leaves cleared by their parts so far.
     bool directions_help_ = true;

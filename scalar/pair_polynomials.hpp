@@ -4,10 +4,10 @@
 #include <fastccd/options.hpp>
 
 #include <interval_stack.hpp>
+#include <meeting_along_directions.hpp>
 #include <scaling.hpp>
 #include <search_coefficients.hpp>
 #include <search_parameters.hpp>
-#include <touching.hpp>
 
 namespace fastccd::scalar {
 
@@ -52,6 +52,16 @@ public:
     [[nodiscard]] Touch<double> touch(const PairCoefficients& leaf, const ErrorBounds& bounds) const
     {
         return touch_in<kind>(leaf, pair_, bounds, all_lanes<double>());
+    }
+    [[nodiscard]] bool apart_by_area(Interval i) const { return apart_by_area_on<kind>(pair_, i.a, i.b).value; }
+    // See meeting_along_directions.hpp.
+    [[nodiscard]] AlongDirections<double> along_directions(double start, const ErrorBounds& bounds) const
+    {
+        return FASTCCD_KERNEL_NAMESPACE::along_directions<kind>(pair_, start, bounds, all_lanes<double>());
+    }
+    [[nodiscard]] bool meets_after_directions(double time, double leaf_width) const
+    {
+        return meeting_after_directions<kind>(pair_, time, leaf_width, all_lanes<double>()).present.value;
     }
     [[nodiscard]] bool contact_proven(Interval i) const { return contact_proven_on<kind>(pair_, Between<double>{i.a, i.b}).value; }
     [[nodiscard]] bool contact_proven_near(double s) const { return FASTCCD_KERNEL_NAMESPACE::contact_proven_near<kind>(pair_, s).value; }

@@ -47,12 +47,21 @@ constexpr double shortest_stretch = 0x1p-50;
 
 /// From where the last look reaches, as far as directions that follow the primitives prove a distance above d. `stretch`: how far
 /// the next one is asked; doubled and halved with success. Each counts as a look, of which there are to be `most`. True if they prove it
-/// to the end.
+/// to the end. Where not even the first does, as where shapes are nearly degenerate, the pair goes on as it would have.
 template <PairKind kind>
 bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationParameters& wanted, const SeparationBounds& bounds, double most)
 {
-    pair.time = past_window(pair, pair.high);
+    const double start = past_window(pair, pair.high);
     bool farther = true;
+    if (pair.looks < most && start < 1.0) {
+        const double end = std::min(start + stretch, 1.0);
+        if (!FollowingDirection<kind>{pair.r, start, end}.farther(pair.extents, wanted, bounds)) {
+            pair.looks += 1.0;
+            stretch = std::max(0.5 * stretch, shortest_stretch);
+            return false;
+        }
+    }
+    pair.time = start;
     while (farther && pair.time < 1.0 && pair.looks < most) {
         const double end = std::min(pair.time + stretch, 1.0);
         farther = FollowingDirection<kind>{pair.r, pair.time, end}.farther(pair.extents, wanted, bounds);
@@ -65,16 +74,31 @@ bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationPar
     return 1.0 <= pair.time;
 }
 
+/// Where contact is asked for, looks after which a pair counts as touching at twice the distance, and again after as many, `most_doublings` times:
+/// edges that glide along one line, say, some 2^10 u of their size apart, would take thousands otherwise. Choices.
+constexpr double looks_to_double = 16;
+constexpr int most_doublings = 17;
+
+/// SeparationParameters::stop then: what that is more than the resolution.
+double stop_for_contact(double looks, double size)
+{
+    const int doublings = std::min(static_cast<int>(looks / looks_to_double), most_doublings);
+    return SeparationParameters::resolution * size * (std::scalbn(1.0, doublings) - 1.0);
+}
+
 constexpr double never = std::numeric_limits<double>::infinity();
 
+enum class AskedFor { distance, contact };
+
 /// From where the pair is on its way; the time in units of t_max. After `most` looks, fewer than most_looks, the time reached.
-template <PairKind kind>
-SearchResult walk(SeparationRecord<double>& pair, const SearchParameters& parameters, double limit, double most = most_looks)
+template <PairKind kind, AskedFor what>
+SearchResult walk(SeparationRecord<double>& pair, SearchParameters parameters, double limit, double most = most_looks)
 {
     const SeparationBounds bounds{parameters.bounds.rho};
     double stretch = 1.0;
     while (true) {
-        const StepOutcome<double> outcome = step<kind>(pair, separation<kind>(positions(pair.r, pair.at).r), parameters, limit);
+        if (what == AskedFor::contact) parameters.separation.stop = stop_for_contact(pair.looks, sum(pair.extents));
+        const StepOutcome<double> outcome = step<kind>(pair, next_look<kind>(pair, parameters), parameters, limit);
         const bool followed = outcome.left.value && follow<kind>(pair, stretch, parameters.separation, bounds, most);
         const auto looks = static_cast<unsigned>(pair.looks);
         if (outcome.farther.value || followed) return {.toi = never, .intervals = looks};
@@ -98,7 +122,7 @@ SearchResult search(const double* coordinates, SearchParameters parameters, doub
     if ((farther.first & farther.second).value) return {.toi = never};
     if (first_look<kind>(pair, farther, parameters).value) return {.toi = never, .intervals = 1};
     guess_contact<kind>(pair, parameters);
-    SearchResult result = walk<kind>(pair, parameters, limit);
+    SearchResult result = walk<kind, AskedFor::distance>(pair, parameters, limit);
     if (result.toi <= 1.0) result.toi = parameters.time(result.toi);
     return result;
 }
@@ -111,7 +135,7 @@ SearchResult search_on(const PairCoefficients& coefficients, SearchParameters pa
     pair.r = with_normalized_extents(motion_of<double>(coefficients));
     pair.extents = extents(pair.r);
     pair.time = pair.at = pair.window_low = pair.window_high = time;
-    return walk<kind>(pair, parameters, 1.0, most);
+    return walk<kind, AskedFor::contact>(pair, parameters, 1.0, most);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ SearchResult separation_search(PairKind kind, const double* coordinates, const S
 
 /// The same without any distance, for a pair that is certainly apart before `time`: the first time from there on at which it is not,
 /// or at which it is that close that computed positions cannot tell, 2^8 u of the sum of the extents, axes scaled so that these are
-/// alike; +infinity if there is none. Times in units of t_max; `intervals` counts looks. After `most` of them, if that is fewer than the
-/// most_looks that there are at most, a time until which it is apart.
+/// alike; after n looks, 2^(n / 16) times that, up to 2^17 times; +infinity if there is none. Times in units of t_max; `intervals` counts
+/// looks. After `most` of them, if that is fewer than the most_looks that there are at most, a time until which it is apart.
 SearchResult apart_until(const PairCoefficients& pair, const SearchParameters& parameters, double time,
                          unsigned most = static_cast<unsigned>(FASTCCD_KERNEL_NAMESPACE::most_looks));
 

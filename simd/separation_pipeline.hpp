@@ -190,8 +190,7 @@ private:
 
     FASTCCD_INLINE void look_again(unsigned i)
     {
-        const SeparationRecord<L> record = record_at(i);
-        const Separation<L> seen = separation<kind>(positions(record.r, record.at).r);
+        const Separation<L> seen = next_look<kind>(record_at(i), parameters_);
         Looks& looks = scratch_.looks;
         store(looks.n, 0, i, seen.n);
         Lane<L>::store(&looks.gap[i], seen.gap);

@@ -6,8 +6,8 @@
 #pragma once
 
 #include <kernel_table.hpp>
+#include <meeting_along_directions.hpp>
 #include <search_coefficients.hpp>
-#include <touching.hpp>
 #include <unscaled_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
@@ -118,20 +118,28 @@ __attribute__((noinline)) Contacts<L> answer_in_leaf(const PairCoefficientsOf<L>
     add_rounding_on_parts<kind>(leaf);
     const Touch<L> touch = touch_in<kind>(leaf, pair, parameters.bounds, open);
     found.apart = apart | touch.apart;
-    if (Lane<L>::bits(touch.present) == 0) return found;
+    LaneMask<L> unanswered = open & !(touch.present | touch.apart);
+    if (Lane<L>::bits(unanswered) != 0) unanswered = unanswered & !apart_by_area_on<kind>(pair, left, left + broadcast<L>(parameters.leaf_width));
+    const AlongDirections<L> along = along_directions<kind>(pair, touch.lower_bound, parameters.bounds, unanswered);
+    const LaneMask<L> ended = along.asked & !(along.goes_on | along.apart);
+    const Meeting<L> met = meeting_after_directions<kind>(pair, along.time, parameters.leaf_width, ended);
+    const LaneMask<L> answered = touch.present | met.present;
+    if (Lane<L>::bits(answered) == 0) return found;
     // The search comes to this leaf if nothing around it has a certificate: if the pair meets, or if the leaf has none even by less than
     // the bounds; where neither, all that is around it is asked.
-    LaneMask<L> comes_here = meets_at<kind>(pair, touch.time);
-    if (Lane<L>::bits(touch.present & !comes_here) != 0) {
+    LaneMask<L> comes_here = touch.present;
+    if (Lane<L>::bits(comes_here) != 0) comes_here = comes_here & meets_at<kind>(pair, touch.time);
+    if (Lane<L>::bits(answered & !comes_here) != 0) {
         set_bounds<kind>(leaf, pair, -1.0);
         comes_here = comes_here | !apart_on<kind>(leaf, all);
     }
-    if (const LaneMask<L> unclear = touch.present & !comes_here; Lane<L>::bits(unclear) != 0)
+    if (const LaneMask<L> unclear = answered & !comes_here; Lane<L>::bits(unclear) != 0)
         comes_here = comes_here | not_apart_around<kind>(pair, left, parameters.leaf_width, unclear);
-    const LaneMask<L> present = touch.present & comes_here;
-    found.reported = proven | present;
-    if (Lane<L>::bits(present) != 0) found.proven = proven | (present & (certain | contact_proven_near<kind>(pair, touch.time)));
-    found.time = select<L>(present, touch.lower_bound, left);
+    const LaneMask<L> present = touch.present & comes_here, later = met.present & comes_here;
+    found.reported = proven | present | later;
+    found.proven = proven | (later & met.proven);
+    if (Lane<L>::bits(present) != 0) found.proven = found.proven | (present & (certain | contact_proven_near<kind>(pair, touch.time)));
+    found.time = select<L>(present, touch.lower_bound, select<L>(later, along.time, left));
     return found;
 }
 

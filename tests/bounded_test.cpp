@@ -6,6 +6,8 @@
 #include <tbb/global_control.h>
 
 #include <certified_search.hpp>
+#include <pair_polynomials.hpp>
+#include <separation_search.hpp>
 
 #include "allocation_count.hpp"
 #include "amount.hpp"
@@ -103,6 +105,36 @@ TEST(Bounded, MomentsWithoutAreaAreSkipped)
             EXPECT_LT(moments.largest, scalar::most_intervals / 2) << "without directions, some of these come to the cap";
         }
         EXPECT_LE(moments.at_cap, moments.pairs / 1000) << "without an end after directions, one in 130 does at 1e-12";
+    }
+}
+
+/// Two edges of a cloth that glide along one line while they turn, at a distance that rounding hardly hides: the closer, the shorter each
+/// direction keeps them apart.
+TEST(Bounded, LooksAtGlidingEdges)
+{
+    const oracle::Pair near{{{0.17323960073256414, 0.097586305795855088, -0.21654835976913106},
+                             {0.17484810057854314, 0.096101131038407561, -0.21615714935965044},
+                             {0.17472161097628827, 0.0962179242931165, -0.21618791440179136},
+                             {0.17583084106762337, 0.095193705319790239, -0.21591811469834263},
+                             {0.17327904352360302, 0.097544197387963133, -0.21651791251352784},
+                             {0.17487878121926154, 0.096064496113927395, -0.21615986511787338},
+                             {0.1747528880492728, 0.096181077765546324, -0.21618834455761379},
+                             {0.17585563784474192, 0.095155880040092497, -0.21593414663299498}}};
+    const oracle::Pair farther{{{0.90574609367494108, -0.40612845612433623, -0.80706210695360336},
+                                {0.90353252897753378, -0.41202615746117899, -0.80297362024424468},
+                                {0.90522818456235121, -0.40753957426267706, -0.80609652509075747},
+                                {0.90316908750042391, -0.41297673986654865, -0.80230745199891651},
+                                {0.90674422188838821, -0.40613417228699411, -0.8080033248839722},
+                                {0.90440242142608263, -0.41202778960332886, -0.80408724520801189},
+                                {0.90598998279819398, -0.40761274459037422, -0.80699451464304206},
+                                {0.90413520492120114, -0.41293881613609662, -0.80349688494074623}}};
+    const SearchParameters parameters{1e-9, 1.0, false};
+    for (const oracle::Pair& pair : {near, farther}) {
+        const scalar::PairPolynomials<PairKind::edge_edge> polynomials{pair[0].data(), parameters};
+        const unsigned looks = scalar::apart_until(polynomials.coefficients(), parameters, 0.0).intervals;
+        std::printf("gliding edges: %u looks\n", looks);
+        EXPECT_GT(looks, 64u) << "nothing was tested";
+        EXPECT_LE(looks, 384u) << "where the distance at which they count as touching does not double, thousands";
     }
 }
 

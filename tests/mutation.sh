@@ -165,9 +165,7 @@ mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/resul
 mutant 'search: nothing skipped' scalar/leaf_search.hpp 's/\|\| !directions_help_ \|\|/|| directions_help_ ||/' bounded_test
 mutant 'search: no end after directions' scalar/leaf_search.hpp 's/search_\.intervals \+ most_after_directions, most_intervals/most_intervals, most_intervals/' bounded_test
 mutant 'search: eq. 7 of leaves alone' scalar/leaf_search.hpp 's/stack_, laborious_ >= laborious_leaves, limit/stack_, false, limit/' nothing_invented_test
-mutant 'search: not resumed after directions' scalar/certified_search.cpp 's/if \(!leaves\.is_apart_after\(first\)\)/if (true)/' nothing_invented_test
-mutant 'search: resumed at the end of the leaf' scalar/leaf_search.hpp 's/if \(stack_\.empty\(\) [^;]*;//' ordered_search_test
-mutant 'search: parts before a resumed time again' scalar/leaf_search.hpp 's/if \(leaf\.a < skipped_to_\) stack[^;]*;//' nothing_invented_test
+mutant 'search: parts before where directions end again' scalar/leaf_search.hpp 's/if \(leaf\.a < skipped_to_\) stack[^;]*;//' nothing_invented_test
 mutant 'search: as many looks as it takes to skip' scalar/separation_search.cpp 's/if \(most < most_looks && most <= pair\.looks\) return[^;]*;//' ordered_search_test
 mutant 'search: after most looks, the time of the next' scalar/separation_search.cpp 's/return \{\.toi = pair\.time, \.intervals = looks\};(\s*\}\s*\})/return {.toi = pair.at, .intervals = looks};$1/' ordered_search_test
 mutant 'search: the leaf that ends with a skip dropped' scalar/interval_stack.hpp 's/peek\(0\)\.b < time/peek(0).b <= time/' ordered_search_test
@@ -368,6 +366,27 @@ mutant 'separation: following, d not asked for' $following 's/parameters\.thresh
 mutant 'separation: following goes over the window' scalar/separation_search.cpp 's/pair\.time = past_window\(pair, end\)/pair.time = past_window(pair, end + stretch)/' separation_test
 mutant 'separation: normals that vanish' kernels/separating_direction.hpp 's/less\(broadcast<L>\(smallest_square\), normal_square\) &\s*//' separation_test
 mutant 'separation: corners from the far end' kernels/separating_direction.hpp 's/less\(squares\[j\], squares\[i\]\)/less(squares[i], squares[j])/' separation_test
+
+# ---- Directions of all features, and where they lead
+features=kernels/feature_directions.hpp along=kernels/meeting_along_directions.hpp
+mutant 'features: no corners' $features 's/consider\(r\[i\]\);(\s*consider\(perpendicular_to\(side)/$1/' error_bounds_test
+mutant 'features: no sides of a face' $features 's/consider\(perpendicular_to\(side\[i\], r\[i\]\)\);//' error_bounds_test
+mutant 'features: no side along the second edge' $features 's/consider\(perpendicular_to\(second, r\[1\]\)\);//' error_bounds_test
+mutant 'features: the plane from one side' $features 's/consider\(\{negated[^;]*;//' error_bounds_test
+mutant 'features: perpendicular but for rounding' $features 's/return subtract\(once, [^;]*;/return once;/' error_bounds_test
+mutant 'features: normals as they are' $features 's/cross\(first, perpendicular_to\(first, second\)\)/cross(first, second)/' error_bounds_test
+mutant 'features: not asked' $features 's/less_equal\(seen\.gap, needed\)/no_lanes<L>()/' error_bounds_test
+mutant 'along: meets, whatever certificates say' $along 's/found\.present & meets_at<kind>[^;]*;/found.present;/' nothing_invented_test touching_test
+mutant 'along: meets, whatever eq. 7 says' $along 's/found\.present & !apart_by_area_on[^;]*;/found.present;/' nothing_invented_test ordered_search_test
+mutant 'along: at time 0' $along 's/asked & less\(broadcast<L>\(0\.0\), time\)/asked/' never_zero_test touching_test same_bits_test
+mutant 'along: apart to the end of a direction' $along 's/less\(one, seen\.until\)/less(broadcast<L>(0.5), seen.until)/' truth_test same_bits_test
+mutant 'along: lanes answer where directions go on' simd/touching_pairs.hpp 's/along\.asked & !\(along\.goes_on \| along\.apart\)/along.asked/' touching_test same_bits_test
+mutant 'along: lanes ask in leaves that eq. 7 clears' simd/touching_pairs.hpp 's/unanswered & !apart_by_area_on[^;]*;/unanswered;/' touching_test same_bits_test
+mutant 'along: the search asks in leaves that eq. 7 clears' scalar/leaf_search.hpp 's/may_ask_directions_ && !pair_\.apart_by_area\(leaf\)/may_ask_directions_/' touching_test same_bits_test
+mutant 'along: the search asks again and again' scalar/leaf_search.hpp 's/may_ask_directions_ = false;\s*double/double/' touching_test same_bits_test ordered_search_test
+mutant 'along: not on beyond the leaf' scalar/leaf_search.hpp 's/go_on_at\(time\);\s*if \(leaf\.b <= time\) return none;//' touching_test ordered_search_test bounded_test
+mutant 'along: distances do not double' scalar/separation_search.cpp 's/looks_to_double = 16/looks_to_double = 1e9/' bounded_test
+mutant 'along: distances double with a separation' scalar/separation_search.cpp 's/what == AskedFor::contact/true/' separation_test separation_bits_test
 
 # ---- Boxes of indexed pairs
 boxes=scheduler/mesh_boxes.cpp

@@ -382,13 +382,11 @@ TEST(OrderedSearch, ProvenNearbyMayStillBeInDoubt)
 {
     std::size_t later = 0;
     std::vector<oracle::Pair> pairs;
-    for (const double tolerance : {1e-3, 1e-9}) {
-        const SearchParameters parameters{tolerance, 1.0, false};
-        generate("mixed_exponent", oracle::Kind::vertex_face, 71, 800, pairs);
-        later += later_than_proven_nearby<PairKind::vertex_face>(pairs, parameters);
-        generate("mixed_exponent", oracle::Kind::edge_edge, 71, 800, pairs);
-        later += later_than_proven_nearby<PairKind::edge_edge>(pairs, parameters);
-    }
+    const SearchParameters parameters{1e-15, 1.0, false};  // in wider leaves directions are asked before parts
+    generate("mixed_exponent", oracle::Kind::vertex_face, 71, 800, pairs);
+    later += later_than_proven_nearby<PairKind::vertex_face>(pairs, parameters);
+    generate("mixed_exponent", oracle::Kind::edge_edge, 71, 800, pairs);
+    later += later_than_proven_nearby<PairKind::edge_edge>(pairs, parameters);
     EXPECT_GT(later, 5u) << "nothing was tested";
 }
 

@@ -40,7 +40,7 @@ void walk(const oracle::Pair& pair, const SearchParameters& parameters, Walk& to
     totals.guesses += guessed;
     while (record.looks < most_lane_looks) {
         const double before = record.time, looks = record.looks;
-        const StepOutcome<double> outcome = step<kind>(record, separation<kind>(positions(record.r, record.at).r), parameters, 1.0);
+        const StepOutcome<double> outcome = step<kind>(record, next_look<kind>(record, parameters), parameters, 1.0);
         ++totals.steps;
         ASSERT_GE(record.time, before) << "of what is proven nothing is asked again: " << lossless(pair);
         ASSERT_GE(record.at, record.time) << lossless(pair);

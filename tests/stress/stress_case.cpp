@@ -68,9 +68,8 @@ std::string against_exact_distances(const Question& question, const oracle::Pair
         if (farther == oracle::Farther::closer) return std::isinf(toi) ? "missed" : "late";
         undecided += farther == oracle::Farther::not_shown;
     }
-    // 2 sqrt(u), which separation_test.cpp says to be measured, of any pair but those that come to the cap on looks. At time 0 this is
-    // that toi is positive where the pair is farther.
-    const double bound = 2.0 * std::sqrt(0x1p-53);
+    // 2^8 u (separation_test.cpp), but for the cap on looks. At time 0 this is that toi is positive where the pair is farther.
+    constexpr double bound = 0x1p8 * 0x1p-53;
     if (std::isfinite(toi) && excess_at(question, pair, toi) > bound && looks_at(question, pair) < FASTCCD_KERNEL_NAMESPACE::most_looks)
         return "farther at toi than stated";
     return {};
