@@ -159,9 +159,9 @@ mutant 'search: inclusion by two of three' $intervals 's/p\.positive & q\.positi
 mutant 'search: proof by sign alone' $intervals 's/in_lanes<L>\(pair\.cubic_bound\);(\s*return \(less\(bound, f\.c0\))/broadcast<L>(0.0);$1/' certificates_test truth_test nothing_invented_test same_bits_test stress
 mutant 'search: first leaf not refined' scalar/leaf_search.hpp 's/if \(leaf\.a > 0\.0 && pair/if (leaf.a >= 0.0 \&\& pair/' never_zero_test
 mutant 'search: coarse next to time 0' kernels/touching.hpp 's/finest_at_zero = 0x1p-100/finest_at_zero = 0x1p-36/' never_zero_test
-mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/\|\| !leaves\.in_doubt\(first\)/|| true/' nothing_invented_test never_zero_test
+mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/&& leaves\.in_doubt\(first\)/\&\& false/' nothing_invented_test never_zero_test
 mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair_\.has_area\(s\)//' nothing_invented_test never_zero_test
-mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof == Proof::leaf \|\|/result.proof != Proof::none ||/' ordered_search_test
+mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf &&/result.proof == Proof::none \&\&/' ordered_search_test
 mutant 'search: nothing skipped' scalar/leaf_search.hpp 's/\|\| !directions_help_ \|\|/|| directions_help_ ||/' bounded_test
 mutant 'search: no end after directions' scalar/leaf_search.hpp 's/search_\.intervals \+ most_after_directions, most_intervals/most_intervals, most_intervals/' bounded_test
 mutant 'search: eq. 7 of leaves alone' scalar/leaf_search.hpp 's/stack_, laborious_ >= laborious_leaves, limit/stack_, false, limit/' nothing_invented_test
