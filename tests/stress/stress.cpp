@@ -209,7 +209,7 @@ int run(const Arguments& arguments, const char* program)
         return report(round.question, round.pairs[found.pair], found.what, program);
     } while (std::chrono::steady_clock::now() < end);
     std::printf("seed %llu: %llu pairs, %llu more with a minimum separation (%llu of them beyond the oracle), in %llu rounds on %zu "
-                "instruction sets: nothing missed, nothing late, the same bits\n",
+                "instruction sets: nothing missed, late or farther than stated, the same bits\n",
                 static_cast<unsigned long long>(arguments.seed), static_cast<unsigned long long>(asked),
                 static_cast<unsigned long long>(asked_with_separation), static_cast<unsigned long long>(undecided),
                 static_cast<unsigned long long>(rounds), isas_to_test().size());
