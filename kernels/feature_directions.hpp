@@ -12,7 +12,8 @@
 // |component| of r1, r2, r3), h = 10 u S, and w the width of the polygon beside the side in question (largest distance of a corner from its
 // line), where D > 16 h; otherwise nothing more is to be proven than that D is less than 160 u S.
 //
-// - Nearest point a corner p: n = p / |p|, a difference of what is given, is off by some u. No corner is lower than p.
+// - Nearest point a corner p: n = p / |p|, a difference of what is given, is off by some u. No corner is lower than p. (The shortest vector of
+//   separation() is as good in all positions tried, but of nearly parallel edges not by a proof.)
 // - On a side: perpendicular_to() is off by h, e = h / D. Other corners lie y <= w beside the plane of n and the side, and z >= 0 above
 //   it, and sink by e y. If w^2 <= h D that is h / 4 at most. If not, but e y <= z, nothing sinks below the side. Otherwise the normal of the plane,
 //   off by h / w < sqrt(h / D), is turned from n by less than h / D more: D sinks by (h / D + sqrt(h / D))^2 D / 2 < 0.8 h.

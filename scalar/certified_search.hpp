@@ -14,9 +14,8 @@ namespace fastccd::scalar {
 /// `most_extensions` of them; a leaf, or the first after those, is the answer: contact, with the lower bound reached. So one pair takes at
 /// most 4,096 + 16 * 64 intervals and what waits, and before a leaf is halved the certificates of one look at it (touching.hpp), some eight
 /// times what an interval takes, which are not counted, nor are four looks along directions (meeting_along_directions.hpp). Other looks along
-/// directions on the way count as intervals, `most_looks_to_skip` each time, below the cap, so that they may pass it by as many, and bring
-/// it down to 512 more (LeafSearch); those at the end do not count, at most 4,098. Counting roots has 4,096 for itself, and no number if they
-/// are used up.
+/// directions on the way count as intervals, `most_looks_to_skip` each time, below the cap, so that they may pass it by as many; those at the
+/// end do not count, at most 4,098. Counting roots has 4,096 for itself, and no number if they are used up.
 inline constexpr unsigned most_intervals = 4096, extension = 64, most_extensions = 16, most_looks_to_skip = 256;
 
 /// What is certain about a contact that is reported.

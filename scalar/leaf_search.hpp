@@ -36,7 +36,7 @@ public:
             return 0.0;
         }
         if (is_leaf(whole)) return pair_.apart(whole) ? none : contact_in_leaf(whole);
-        return next_contact(most_intervals);
+        return next_contact();
     }
 
     /// For a leaf without a certificate: `none` if it is apart after all; its left end, but for the first leaf, if contact is
@@ -116,13 +116,9 @@ private:
     /// Where volumes and areas vanish for a while, as when both edges are points for a moment, leaf after leaf is cleared by its parts alone:
     /// thousands of leaves, up to dozens of parts each. After every fourth of them the search asks how long directions keep the pair apart, and goes
     /// on there; not any more when that has led it less than `least_skipped` leaves on, or at the cap. Looks count as intervals. From the
-    /// fourth on eq. 7 is asked of wider intervals, too. Where directions end, a pair is so close that eq. 7 gets on by ever shorter steps:
-    /// `most_after_directions` are left to it, so many that the answer is in doubt then, and directions have the last word.
-    /// All three numbers are choices: no answer is right or wrong by them.
+    /// fourth on eq. 7 is asked of wider intervals, too. Both numbers are choices: no answer is right or wrong by them.
     static constexpr unsigned laborious_leaves = 4;
     static constexpr double least_skipped = 8;
-    static constexpr unsigned most_after_directions = 512;
-    static_assert(most_after_directions >= most_intervals_in_leaf);  // see in_doubt
     /// Lanes tell without asking the search of pairs with leaves that eq. 7 clears, one for each root of the cubic (simd/root_stages.hpp).
     static_assert(laborious_leaves > 3);
 
@@ -159,8 +155,9 @@ private:
     [[nodiscard]] bool is_leaf(Interval i) const { return i.width() <= parameters_.leaf_width; }
 
     /// See first_contact(): in what waits.
-    double next_contact(unsigned limit)
+    double next_contact()
     {
+        unsigned limit = most_intervals;
         const auto is_narrowest = [&](Interval i) { return is_leaf(i); };
         while (const auto found = search_.next_without_certificate(stack_, laborious_ >= laborious_leaves, limit, is_narrowest)) {
             // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
@@ -177,7 +174,7 @@ private:
             leaf_of_answer_ = *found;
             const double contact = is_wide ? std::max(found->a, skipped_to_) : contact_in_leaf(*found, most_parts);
             if (contact == none) {
-                if (search_.intervals != before && skip_along_directions(*found)) limit = limit_after_directions();
+                if (search_.intervals != before) skip_along_directions(*found);
                 continue;
             }
             return contact;
@@ -185,22 +182,20 @@ private:
         return none;
     }
 
-    [[nodiscard]] unsigned limit_after_directions() const { return std::min(search_.intervals + most_after_directions, most_intervals); }
     void go_on_at(double time)
     {
         skipped_to_ = time;
         stack_.skip_to(time, parameters_.leaf_width);
     }
 
-    /// After a laborious leaf. Whether it asked directions.
-    bool skip_along_directions(Interval leaf)
+    /// After a laborious leaf.
+    void skip_along_directions(Interval leaf)
     {
-        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return false;
+        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return;
         const SearchResult apart = apart_until(pair_.coefficients(), parameters_, leaf.b, most_looks_to_skip);
         search_.intervals += apart.intervals;
         directions_help_ = apart.toi - leaf.b >= least_skipped * parameters_.leaf_width;
         go_on_at(apart.toi);
-        return true;
     }
 
     /// Parts of a leaf are halved to the spacing of doubles at their time, or to finest_at_zero.

@@ -88,6 +88,17 @@ TEST(Bounded, IntervalsOfMadePairs)
     }
 }
 
+/// Thin pairs may be so close for thousands of leaves that directions do not tell them apart: eq. 7 does, of more than a leaf at a time.
+TEST(Bounded, LeavesThatOnlyAreasClear)
+{
+    for (const double tolerance : {1e-12, 1e-15}) {
+        Work thin;
+        for (const auto kind : kinds) thin.add(kind, ThinPairs{kind, 5}.next(amount(60000)), tolerance);
+        thin.report("thin pairs", tolerance);
+        EXPECT_LT(thin.largest, 1024u);
+    }
+}
+
 /// Volumes and areas vanish next to a moment at which both primitives are points or lines: of thousands of leaves none has a certificate by
 /// itself. Directions lead past most of them, and end where the pair is too close for them.
 TEST(Bounded, MomentsWithoutAreaAreSkipped)

@@ -163,8 +163,7 @@ mutant 'search: nothing in doubt' scalar/certified_search.cpp 's/&& leaves\.in_d
 mutant 'search: shapes not in doubt' scalar/leaf_search.hpp 's/ \|\| !pair_\.has_area\(s\)//' nothing_invented_test never_zero_test
 mutant 'search: proven nearby not in doubt' scalar/certified_search.cpp 's/result\.proof != Proof::leaf &&/result.proof == Proof::none \&\&/' ordered_search_test
 mutant 'search: nothing skipped' scalar/leaf_search.hpp 's/\|\| !directions_help_ \|\|/|| directions_help_ ||/' bounded_test
-mutant 'search: no end after directions' scalar/leaf_search.hpp 's/search_\.intervals \+ most_after_directions, most_intervals/most_intervals, most_intervals/' bounded_test
-mutant 'search: eq. 7 of leaves alone' scalar/leaf_search.hpp 's/stack_, laborious_ >= laborious_leaves, limit/stack_, false, limit/' nothing_invented_test
+mutant 'search: eq. 7 of leaves alone' scalar/leaf_search.hpp 's/stack_, laborious_ >= laborious_leaves, limit/stack_, false, limit/' bounded_test
 mutant 'search: parts before where directions end again' scalar/leaf_search.hpp 's/if \(leaf\.a < skipped_to_\) stack[^;]*;//' nothing_invented_test
 mutant 'search: as many looks as it takes to skip' scalar/separation_search.cpp 's/if \(most < most_looks && most <= pair\.looks\) return[^;]*;//' ordered_search_test
 mutant 'search: after most looks, the time of the next' scalar/separation_search.cpp 's/return \{\.toi = pair\.time, \.intervals = looks\};(\s*\}\s*\})/return {.toi = pair.at, .intervals = looks};$1/' ordered_search_test
@@ -369,7 +368,6 @@ mutant 'separation: corners from the far end' kernels/separating_direction.hpp '
 
 # ---- Directions of all features, and where they lead
 features=kernels/feature_directions.hpp along=kernels/meeting_along_directions.hpp
-mutant 'features: no corners' $features 's/consider\(r\[i\]\);(\s*consider\(perpendicular_to\(side)/$1/' error_bounds_test
 mutant 'features: no sides of a face' $features 's/consider\(perpendicular_to\(side\[i\], r\[i\]\)\);//' error_bounds_test
 mutant 'features: no side along the second edge' $features 's/consider\(perpendicular_to\(second, r\[1\]\)\);//' error_bounds_test
 mutant 'features: the plane from one side' $features 's/consider\(\{negated[^;]*;//' error_bounds_test

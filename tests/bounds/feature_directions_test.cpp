@@ -19,7 +19,8 @@ using portable::Vector3;
 constexpr double u = 0x1p-53;
 
 /// Primitives in one position, x0 at the origin: needles, faces and parallelograms of any width, next to one another at any height, in a
-/// frame of any direction; points of one mostly within the other's length, as otherwise corners are nearest.
+/// frame of any direction; points of one mostly within the other's length, as otherwise corners are nearest. And edges of which the second runs
+/// back along the first, from next to its end on: that end is nearest, but hardly.
 class ThinPositions {
 public:
     ThinPositions(oracle::Kind kind, std::uint64_t seed) : kind_{kind}, bits_{seed} {}
@@ -37,21 +38,36 @@ public:
             const double length = std::hypot(frame[i][0], frame[i][1], frame[i][2]);
             for (double& x : frame[i]) x /= length;
         }
-        const double width = binades(58), height = binades(58), shorter = binades(30);
         oracle::Pair pair;
+        if (kind_ == oracle::Kind::edge_edge && one_in(4)) {
+            const double angle = binades(40), distance = binades(40), up = uniform(0, 1), back = distance * angle * up * uniform(0, 1);
+            const double at[4][3] = {{}, {1, 0, 0}, {1 + back, distance, 0}, {back, distance + angle * up, angle * uniform(-1, 1)}};
+            place(at, frame, pair);
+            return pair;
+        }
+        const double width = binades(58), height = binades(58), shorter = binades(30);
+        double at[4][3];
         for (std::size_t point = 0; point < 4; ++point) {
             const bool second = point >= (kind_ == oracle::Kind::vertex_face ? 1 : 2);
             const double length = one_in(2) ? shorter : 1.0;
-            const double at[] = {length * uniform(-1, 1), one_in(4) ? 0.0 : width * uniform(-1, 1), second && !one_in(4) ? height * uniform(-1, 1) : 0.0};
-            for (std::size_t k = 0; k < 3; ++k) pair[point][k] = at[0] * frame[0][k] + at[1] * frame[1][k] + at[2] * frame[2][k];
+            at[point][0] = length * uniform(-1, 1);
+            at[point][1] = one_in(4) ? 0.0 : width * uniform(-1, 1);
+            at[point][2] = second && !one_in(4) ? height * uniform(-1, 1) : 0.0;
         }
-        // Differences are exact then.
-        for (std::size_t point = 4; point-- > 0;)
-            for (std::size_t k = 0; k < 3; ++k) pair[point + 4][k] = pair[point][k] -= pair[0][k];
+        place(at, frame, pair);
         return pair;
     }
 
 private:
+    static void place(const double (&at)[4][3], const double (&frame)[3][3], oracle::Pair& pair)
+    {
+        for (std::size_t point = 0; point < 4; ++point)
+            for (std::size_t k = 0; k < 3; ++k) pair[point][k] = at[point][0] * frame[0][k] + at[point][1] * frame[1][k] + at[point][2] * frame[2][k];
+        // Differences are exact then.
+        for (std::size_t point = 4; point-- > 0;)
+            for (std::size_t k = 0; k < 3; ++k) pair[point + 4][k] = pair[point][k] -= pair[0][k];
+    }
+
     double uniform(double a, double b) { return a + (b - a) * std::ldexp(static_cast<double>(bits_() >> 11), -53); }
     double binades(int n) { return std::exp2(uniform(-n, 0)); }
     bool one_in(unsigned n) { return bits_() % n == 0; }
