@@ -54,10 +54,13 @@ FASTCCD_INLINE Vector3<L> normal_to(const Vector3<L>& first, const Vector3<L>& s
     return cross(first, perpendicular_to(first, second));
 }
 
-/// separation(), by the best of all features for the lanes in `asked`. A function of its own: much code, seldom run.
+/// `best`, what separation() has shown, or what the best of all features shows: for the lanes in `asked`, where two points of the
+/// primitives are farther apart than `needed`. A function of its own: much code, seldom run.
 template <PairKind kind, class L>
-__attribute__((noinline)) Separation<L> separation_by_features(const Vector3<L> (&r)[3], Separation<L> best, LaneMask<L> asked)
+__attribute__((noinline)) Separation<L> separation_by_features(const Vector3<L> (&r)[3], Separation<L> best, L needed, LaneMask<L> asked)
 {
+    asked = asked & less(needed * needed, square_distance<kind>(r, best));
+    if (Lane<L>::bits(asked) == 0) return best;
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
     const auto consider = [&](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA {
         const L square = dot(v, v);
@@ -99,9 +102,8 @@ template <PairKind kind, class L>
 FASTCCD_INLINE Separation<L> separation_beyond(const Vector3<L> (&r)[3], L needed)
 {
     const Separation<L> seen = separation<kind>(r);
-    LaneMask<L> open = less_equal(seen.gap, needed);
-    if (Lane<L>::bits(open) != 0) open = open & less(needed * needed, square_distance<kind>(r, seen));
-    return Lane<L>::bits(open) == 0 ? seen : separation_by_features<kind>(r, seen, open);
+    const LaneMask<L> open = less_equal(seen.gap, needed) & less(needed * needed, seen.square_to_side);
+    return Lane<L>::bits(open) == 0 ? seen : separation_by_features<kind>(r, seen, needed, open);
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -102,7 +102,7 @@ void expect_to_show_the_distance(std::uint64_t seed)
             return oracle::excess_of_distance(exact_kind, pair, 0.0, height_along<kind>(seen.n, r), size);
         };
         const portable::Separation<double> of_two = portable::separation<kind>(r);
-        const double of_features = short_of_distance(portable::separation_by_features<kind>(r, of_two, portable::all_lanes<double>()));
+        const double of_features = short_of_distance(portable::separation_by_features<kind>(r, of_two, 0.0, portable::all_lanes<double>()));
         ASSERT_LE(of_features, 0x1p7 * u) << lossless(pair);
         worst = std::max(worst, of_features);
         worst_of_two = std::max(worst_of_two, short_of_distance(of_two));
