@@ -9,14 +9,15 @@
 //
 // All corners, sides and the plane are asked here, with vectors that are perpendicular to their sides to within rounding, however small what is
 // left of them: what lies on a feature does not sink then. The best of them proves D - 64 u S, with S the sum of the extents of the position (largest
-// |component| of r1, r2, r3), h = 10 u S, and w the width of the polygon beside the side in question (largest distance of a corner from its
-// line), where D > 16 h; otherwise nothing more is to be proven than that D is less than 160 u S.
+// |component| of r1, r2, r3; of the pair, where sides are too short to be told from none), if D > 160 u S; otherwise there is nothing to prove but
+// that. With h = 10 u S, and w the width of the polygon beside its longest side (largest distance of a corner from that line):
 //
 // - Nearest point a corner p: n = p / |p|, a difference of what is given, is off by some u. No corner is lower than p. (The shortest vector of
 //   separation() is as good in all positions tried, but of nearly parallel edges not by a proof.)
-// - On a side: perpendicular_to() is off by h, e = h / D. Other corners lie y <= w beside the plane of n and the side, and z >= 0 above
-//   it, and sink by e y. If w^2 <= h D that is h / 4 at most. If not, but e y <= z, nothing sinks below the side. Otherwise the normal of the plane,
-//   off by h / w < sqrt(h / D), is turned from n by less than h / D more: D sinks by (h / D + sqrt(h / D))^2 D / 2 < 0.8 h.
+// - On a side: perpendicular_to() is off by h, e = h / D. Other corners lie y beside the plane of n and the side, and z >= 0 above it, and sink
+//   by e y: nothing sinks below the side where e y <= z. Where not, the polygon rises from the side by less than e: if w^2 > h D, the normal of the plane,
+//   off by h / w < sqrt(h / D), is turned from n by less than h / D more, so D sinks by (h / D + sqrt(h / D))^2 D / 2 < 0.8 h; if not,
+//   perpendicular_to() the longest side, which passes the nearest point within w and e w more: D sinks by (w + h)^2 / (2 D) < 0.8 h, and e w < h / 4.
 // - In the plane: if w^2 > h D, the normal again, and D sinks by h / 2. If not, perpendicular_to() the longest side: the nearest point lies
 //   x <= w beside it, and corners sink by (x (w - x) + x^2 / 2) / D, at most h / 2, and by e w, at most h / 4.
 //

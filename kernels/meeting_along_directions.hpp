@@ -16,7 +16,7 @@ inline constexpr int most_directions = 4;
 
 template <class L>
 struct AlongDirections {
-    LaneMask<L> asked;    ///< All others have area.
+    LaneMask<L> asked;    ///< Those that were open and have no area.
     LaneMask<L> goes_on;  ///< Until `time`, and may be for longer; after most_directions.
     LaneMask<L> apart;    ///< From the start to the end of the step.
     L time;               ///< Apart from the start until then.

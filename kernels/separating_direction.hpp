@@ -166,7 +166,8 @@ FASTCCD_INLINE Separation<L> separation(const Vector3<L> (&r)[3])
     return {scaled(v, inverse), select<L>(along_normal, normal_gap, gap) * abs(inverse), shortest.square};
 }
 
-/// Square of the distance of two points, one of each primitive (SeparationBounds::distance): the nearest ones.
+/// Square of the distance of two points, one of each primitive (SeparationBounds::distance): the nearest ones, or of edges that are nearly
+/// parallel, to within rounding, some others.
 template <PairKind kind, class L>
 FASTCCD_INLINE L square_distance(const Vector3<L> (&r)[3], const Separation<L>& seen)
 {

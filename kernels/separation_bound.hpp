@@ -98,18 +98,22 @@ struct SeparationBounds {
     /// at most 3 (X + Y + Z): + 9.
     [[nodiscard]] FASTCCD_INLINE constexpr double distance() const { return (4 * rho + 33 + slack) * u; }
 
-    /// How much more than d a gap at some time is to be for reach() to be certified there, surely; times the sum of the extents. height() of the
-    /// threshold, and once more for heights at both ends: 4 rho + 20. They change by 4 S at most, and the end of a reach errs by 2^-50 and 4 u, 12 u
-    /// of the time: 48. The gap, of positions that err by rho + 3, of differences by twice that, and of products, by 2 (rho + 3) + 6:
-    /// 6 rho + 80, less than 160 with rho <= 10.
+    /// How much more than d a gap at some time is to be for reach() to be certified from there on, for more than 2^-50 of the time, surely; times
+    /// the sum of the extents. height() of the threshold, and once more for heights at both ends: 4 rho + 20. The end of a reach is where a height's
+    /// excess at one end, at most 2 S, has come to zero, and errs by 2^-50 and 4 u, 12 u of the time, with the 2^-50 after it 20 u: 40. The gap, of
+    /// positions that err by rho + 3, of differences by twice that, and of sums and products, by 2 (rho + 3) + 12: 6 rho + 78, 138 with rho <= 10.
     [[nodiscard]] static constexpr double surely_certified() { return 160 * u; }
 
-    /// How far a pair may be beyond d, or (1 + tolerance) d, at the time at which a search ends, but for a cap on looks; times the sum of the
-    /// extents. Its computed distance is within the resolution, 128 u, or surely_certified(), and errs by distance(). Or no direction is
-    /// certified at the time, or none goes on for 2^-50 of it. The exact height of the best one is then at most the threshold and height() twice,
-    /// 4 rho + 20; and what heights change by, 4 S at most, in that 2^-50, the 2^-50 of reach() and the 4 u that the time is rounded by: 80. The direction
-    /// is found for computed positions, of r_i or of differences of two, which err by 2 (rho + 3), as does its height for these: 4 rho + 12. And
-    /// it shows their distance but for 64 (feature_directions.hpp): 8 rho + 176, 256 at most with rho <= 10.
+    /// A pair also counts as close where a gap above d by no more than this is all that is shown: features have been asked then
+    /// (feature_directions.hpp), or the computed distance is within surely_certified().
+    [[nodiscard]] static constexpr double close_gap() { return 96 * u; }
+
+    /// How far a pair may be beyond d, or (1 + tolerance) d, at the time at which a search ends, but for a cap on looks and the 16 u of
+    /// SeparationParameters::threshold; times the sum of the extents. Its computed distance is within the resolution, 128 u, or surely_certified(),
+    /// and errs by distance(), 75 u: 235. Or features have been asked, and show its distance but for 64 (feature_directions.hpp), for computed
+    /// positions, of r_i or of differences of two, which err by 2 (rho + 3), as does a height for these: 4 rho + 12. What they show is a gap within
+    /// close_gap(): 96 + 64 + 52 = 212. Or it is not certified at the time, or not for 2^-50 of it, so the exact height is at most the
+    /// threshold and height() twice, 4 rho + 20, and 40, as above: 8 rho + 136, 216.
     [[nodiscard]] static constexpr double beyond() { return 256 * u; }
 
     // ---- Certificates of contact, with room for d (farther_certificates.hpp) ------------------------

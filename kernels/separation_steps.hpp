@@ -156,7 +156,9 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     L distance = broadcast<L>(__builtin_inf());
     if (Lane<L>::bits(measured) != 0)
         distance = select<L>(measured, sqrt(square_distance<kind>(at.r, separation)), distance);
-    const LaneMask<L> near = certified & less(zero, time) & less_equal(distance, close);
+    // What is proven tells better how close nearly parallel edges are than the distance of points of theirs.
+    const L shown = broadcast<L>(wanted.threshold) + broadcast<L>(SeparationBounds::close_gap()) * size;
+    const LaneMask<L> near = certified & less(zero, time) & (less_equal(distance, close) | less_equal(gap, shown));
     const LaneMask<L> advancing = certified & !near & less(time * broadcast<L>(1.0 + 0x1p-50), next) &
                                   less(pair.looks, broadcast<L>(most_looks));
     const LaneMask<L> found = here & !(advancing | at_start);

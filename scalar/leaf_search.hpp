@@ -96,7 +96,7 @@ public:
 
     /// After first_contact() has found something at s that is not proven in its leaf: whether it may have been for another reason than
     /// that the pair is as close as computed positions can tell: rounding that the shape amplifies, a cap on intervals or parts, or parts
-    /// before the time to which directions have led. Not where it touches: that has been looked at (counts_as_contact_at).
+    /// before the time to which directions have led. Not where it touches: that has been looked at (counts_as_contact_at, meets_after_directions).
     [[nodiscard]] bool in_doubt(double s) const
     {
         return touch_ == none && ((0.0 < skipped_to_ && s == skipped_to_) || out_of_parts_ || search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
@@ -123,7 +123,7 @@ private:
     static_assert(laborious_leaves > 3);
 
     /// Once for a pair: from `start`, in a leaf, where its shape amplifies rounding, as far as directions lead. If they end where it meets, that is
-    /// the answer; `none` if they lead on beyond the leaf, or to the end.
+    /// the answer; `none` if they lead on beyond the leaf, or to the end; nothing if it has area, or the rest of the leaf is to be looked at.
     std::optional<double> contact_along_directions(Interval leaf, double start)
     {
         const AlongDirections<double> along = pair_.along_directions(start, parameters_.bounds);
@@ -131,11 +131,13 @@ private:
         may_ask_directions_ = false;
         double time = along.apart.value ? none : along.time;
         bool ended = true;
-        if (along.goes_on.value) {
+        if (along.goes_on.value && search_.intervals < most_intervals) {
             const SearchResult apart = apart_until(pair_.coefficients(), parameters_, time, most_looks_to_skip);
             search_.intervals += apart.intervals;
             time = apart.toi;
             ended = apart.intervals < most_looks_to_skip;
+        } else if (along.goes_on.value) {
+            ended = false;
         }
         if (time == none) {
             stack_.drop(stack_.size());
@@ -192,9 +194,10 @@ private:
     void skip_along_directions(Interval leaf)
     {
         if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return;
-        const SearchResult apart = apart_until(pair_.coefficients(), parameters_, leaf.b, most_looks_to_skip);
+        const double start = std::max(leaf.b, skipped_to_);
+        const SearchResult apart = apart_until(pair_.coefficients(), parameters_, start, most_looks_to_skip);
         search_.intervals += apart.intervals;
-        directions_help_ = apart.toi - leaf.b >= least_skipped * parameters_.leaf_width;
+        directions_help_ = apart.toi - start >= least_skipped * parameters_.leaf_width;
         go_on_at(apart.toi);
     }
 

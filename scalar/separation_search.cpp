@@ -47,31 +47,24 @@ constexpr double shortest_stretch = 0x1p-50;
 
 /// From where the last look reaches, as far as directions that follow the primitives prove a distance above d. `stretch`: how far
 /// the next one is asked; doubled and halved with success. Each counts as a look, of which there are to be `most`. True if they prove it
-/// to the end. Where not even the first does, as where shapes are nearly degenerate, the pair goes on as it would have.
+/// to the end. Where not even the first does, as where shapes are nearly degenerate, the next look is the one that was planned.
 template <PairKind kind>
 bool follow(SeparationRecord<double>& pair, double& stretch, const SeparationParameters& wanted, const SeparationBounds& bounds, double most)
 {
     const double start = past_window(pair, pair.high);
+    double time = start;
     bool farther = true;
-    if (pair.looks < most && start < 1.0) {
-        const double end = std::min(start + stretch, 1.0);
-        if (!FollowingDirection<kind>{pair.r, start, end}.farther(pair.extents, wanted, bounds)) {
-            pair.looks += 1.0;
-            stretch = std::max(0.5 * stretch, shortest_stretch);
-            return false;
-        }
-    }
-    pair.time = start;
-    while (farther && pair.time < 1.0 && pair.looks < most) {
-        const double end = std::min(pair.time + stretch, 1.0);
-        farther = FollowingDirection<kind>{pair.r, pair.time, end}.farther(pair.extents, wanted, bounds);
+    while (farther && time < 1.0 && pair.looks < most) {
+        const double end = std::min(time + stretch, 1.0);
+        farther = FollowingDirection<kind>{pair.r, time, end}.farther(pair.extents, wanted, bounds);
         pair.looks += 1.0;
-        if (farther) pair.time = past_window(pair, end);
+        if (farther) time = past_window(pair, end);
         stretch = farther ? 2.0 * stretch : std::max(0.5 * stretch, shortest_stretch);
     }
-    pair.at = pair.time;
+    if (!farther && time == start && pair.looks < most) return false;
+    pair.time = pair.at = time;
     pair.purpose = going_on;
-    return 1.0 <= pair.time;
+    return 1.0 <= time;
 }
 
 /// Where contact is asked for, looks after which a pair counts as touching at twice the distance, and again after as many, `most_doublings` times:

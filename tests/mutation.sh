@@ -384,6 +384,7 @@ mutant 'along: the search asks in leaves that eq. 7 clears' scalar/leaf_search.h
 mutant 'along: the search asks again and again' scalar/leaf_search.hpp 's/may_ask_directions_ = false;\s*double/double/' touching_test same_bits_test ordered_search_test
 mutant 'along: not on beyond the leaf' scalar/leaf_search.hpp 's/go_on_at\(time\);\s*if \(leaf\.b <= time\) return none;//' touching_test ordered_search_test bounded_test
 mutant 'along: distances do not double' scalar/separation_search.cpp 's/looks_to_double = 16/looks_to_double = 1e9/' bounded_test
+mutant 'separation: what is shown does not count as close' kernels/separation_steps.hpp 's/\(less_equal\(distance, close\) \| less_equal\(gap, shown\)\)/less_equal(distance, close)/' bounded_test
 mutant 'along: distances double with a separation' scalar/separation_search.cpp 's/what == AskedFor::contact/true/' separation_test separation_bits_test
 
 # ---- Boxes of indexed pairs
