@@ -12,7 +12,7 @@
 // rounding is left: of volumes and areas, for shapes that do not amplify it (has_area_at in kernels/touching.hpp). Otherwise it is lost in
 // rounding while the distance is still sqrt(u) s, or cbrt(u) s for edges that shrink to a point. So where shapes are nearly degenerate then,
 // and where the search came to a cap, the search with a separation goes on (scalar/certified_search.cpp), unless its first looks have told
-// already that it would stop (kernels/no_distance.hpp). It stops within 2^8 u S of contact (scalar/separation_search.cpp), S the sum of its extents.
+// already that it would stop (kernels/no_distance.hpp). It stops within 2^8 u S of contact (SeparationBounds::beyond()), S the sum of its extents.
 // Axes are multiplied so that these are from 1/2 to 1, S < 3: back in the pair's units components are at most 2 s times as large, which makes
 // 2^8 3 2 u s < 2^11 u s.
 #include <gtest/gtest.h>
@@ -250,7 +250,7 @@ TEST(NothingInvented, ProvenLater)
     EXPECT_EQ(worst.reported, 1u);
 }
 
-/// The farthest that hill climbing came to, of millions of pairs.
+/// The farthest that hill climbing came to before the directions of all features were asked: 3.4e-9 s.
 TEST(NothingInvented, FoundByHillClimbing)
 {
     const oracle::Pair pair{{{-0x1.2c002b9f081e3p+2, -0x1.2c006a5fbb6cap+1, -0x1.2bffe2df9ccc9p+2},

@@ -7,8 +7,8 @@
 //
 // s the sum of the extents: per axis the largest |component| of x_i - x_0. Where it comes from: a pair is reported at a time
 // at which its computed distance is at most (1 + distance_tolerance) d + 128 u s (SeparationParameters::resolution), and that
-// errs by at most 75 u s (SeparationBounds::distance). Or because no direction proves what is left of the distance: SeparationBounds tells
-// how far it is then. And at the cap on looks the time reached is the answer, a lower bound as always: CapOnLooks.
+// errs by at most 75 u s (SeparationBounds::distance). Or because no direction proves what is left of the distance: SeparationBounds::beyond()
+// tells how far it is then. And at the cap on looks the time reached is the answer, a lower bound as always: CapOnLooks.
 #include <gtest/gtest.h>
 
 #include <algorithm>

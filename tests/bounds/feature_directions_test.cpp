@@ -1,4 +1,4 @@
-// What the directions of all features show of a distance D, against exact distances: D - 2^7 u S, whatever the shape (feature_directions.hpp).
+// What the directions of all features show of a distance D, against exact distances: D - 64 u S, whatever the shape (feature_directions.hpp).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -103,7 +103,7 @@ void expect_to_show_the_distance(std::uint64_t seed)
         };
         const portable::Separation<double> of_two = portable::separation<kind>(r);
         const double of_features = short_of_distance(portable::separation_by_features<kind>(r, of_two, 0.0, portable::all_lanes<double>()));
-        ASSERT_LE(of_features, 0x1p7 * u) << lossless(pair);
+        ASSERT_LE(of_features, 64 * u) << lossless(pair);
         worst = std::max(worst, of_features);
         worst_of_two = std::max(worst_of_two, short_of_distance(of_two));
 
@@ -111,7 +111,7 @@ void expect_to_show_the_distance(std::uint64_t seed)
         const double needed = size.get_d() * std::exp2(-static_cast<double>(i % 50));
         const portable::Separation<double> seen = portable::separation_beyond<kind>(r, needed);
         if (seen.gap <= needed) {
-            ASSERT_LE(oracle::excess_of_distance(exact_kind, pair, 0.0, mpq_class(needed), size), 0x1p7 * u) << lossless(pair);
+            ASSERT_LE(oracle::excess_of_distance(exact_kind, pair, 0.0, mpq_class(needed), size), 64 * u) << lossless(pair);
         }
     }
     std::printf("%s: features show a distance but for %.3g u S, two of them but for %.3g u S\n", kind_name(exact_kind), worst / u, worst_of_two / u);
