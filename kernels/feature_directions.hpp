@@ -97,13 +97,20 @@ __attribute__((noinline)) Separation<L> separation_by_features(const Vector3<L> 
     return best;
 }
 
-/// Of the primitives in one position, as separation(). Where that proves no more than `needed` although two points of the primitives
-/// are farther apart, by all features.
+/// Whether features are to be asked: `seen`, by separation(), proves no more than `needed`, although two points of the primitives, if not the
+/// nearest ones, are farther apart.
+template <class L>
+FASTCCD_INLINE LaneMask<L> leaves_open(const Separation<L>& seen, L needed)
+{
+    return less_equal(seen.gap, needed) & less(needed * needed, seen.square_to_side);
+}
+
+/// Of the primitives in one position: separation() or, where that leaves open whether they are farther apart than `needed`, by all features.
 template <PairKind kind, class L>
 FASTCCD_INLINE Separation<L> separation_beyond(const Vector3<L> (&r)[3], L needed)
 {
     const Separation<L> seen = separation<kind>(r);
-    const LaneMask<L> open = less_equal(seen.gap, needed) & less(needed * needed, seen.square_to_side);
+    const LaneMask<L> open = leaves_open(seen, needed);
     return Lane<L>::bits(open) == 0 ? seen : separation_by_features<kind>(r, seen, needed, open);
 }
 

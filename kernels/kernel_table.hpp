@@ -75,6 +75,7 @@ struct ContactGuesses {
 /// What the last looks at the pairs of `advancing` showed: a Separation.
 struct Looks {
     alignas(64) double n[3][AdvancingQueue::capacity], gap[AdvancingQueue::capacity], square_to_side[AdvancingQueue::capacity];
+    unsigned open[AdvancingQueue::capacity];  ///< First pairs of the batches in which that of one is not all that its features can show.
 };
 
 /// Pairs that are screened before any of them goes on. Their blocks, 12 KiB, are then still in the first-level cache.

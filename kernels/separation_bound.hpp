@@ -105,7 +105,8 @@ struct SeparationBounds {
     [[nodiscard]] static constexpr double surely_certified() { return 160 * u; }
 
     /// A pair also counts as close where a gap above d by no more than this is all that is shown: features have been asked then
-    /// (feature_directions.hpp), or the computed distance is within surely_certified().
+    /// (feature_directions.hpp), or the computed distance is within surely_certified(). A choice below that: the more, the fewer looks at
+    /// edges that glide along one line (bench/LIMITS_SEARCH.md).
     [[nodiscard]] static constexpr double close_gap() { return 96 * u; }
 
     /// How far a pair may be beyond d, or (1 + tolerance) d, at the time at which a search ends, but for a cap on looks and the 16 u of

@@ -81,12 +81,13 @@ FASTCCD_INLINE LaneMask<L> first_look(SeparationRecord<L>& pair, const ApartOnHa
     const L zero = broadcast<L>(0.0), half = broadcast<L>(0.5), one = broadcast<L>(1.0), two = broadcast<L>(2.0);
     const L start = select<L>(farther.first, half, zero);
     const L middle = select<L>(farther.first, broadcast<L>(0.75), select<L>(farther.second, broadcast<L>(0.25), half));
-    const Reach<L> reach = look<kind>(pair.r, pair.extents, middle, parameters.separation, bounds).reach;
+    const Vector3<L> n = separation<kind>(positions(pair.r, middle).r).n;  // features are asked where contact may be found
+    const Reach<L> seen = reach<kind>(pair.r, n, threshold_along(n, pair.extents, parameters.separation, bounds.height(kind)));
     // Of what is beyond the reach and in the second half, one window, if they meet; otherwise the half, which ends the search.
-    const LaneMask<L> apart_from_half = farther.second & less(reach.high, half);
-    pair.window_low = select<L>(apart_from_half, half, reach.low);
-    pair.window_high = select<L>(farther.second, two, reach.high);
-    pair.time = past_window(pair, select<L>(less(reach.low, start), max(reach.high, start), start));
+    const LaneMask<L> apart_from_half = farther.second & less(seen.high, half);
+    pair.window_low = select<L>(apart_from_half, half, seen.low);
+    pair.window_high = select<L>(farther.second, two, seen.high);
+    pair.time = past_window(pair, select<L>(less(seen.low, start), max(seen.high, start), start));
     pair.looks = one;
     pair.purpose = broadcast<L>(going_on);
     pair.at = pair.time;
@@ -105,11 +106,34 @@ struct StepOutcome {
     LaneMask<L> left;     ///< Of the others: to the scalar search.
 };
 
-/// The look at the pair at the time for the next one.
+/// The look at the pair at the time for the next one, but for features (feature_directions.hpp).
+template <PairKind kind, class L>
+FASTCCD_INLINE Separation<L> quick_look(const SeparationRecord<L>& pair)
+{
+    return separation<kind>(positions(pair.r, pair.at).r);
+}
+
+/// Lanes in which those are to be asked for, too. Contact is proven by points, not by directions.
+template <class L>
+FASTCCD_INLINE LaneMask<L> asks_features(const SeparationRecord<L>& pair, const Separation<L>& quick, const SearchParameters& parameters)
+{
+    return less(pair.purpose, broadcast<L>(proving)) & leaves_open(quick, surely_certified(pair.extents, parameters.separation));
+}
+
+/// What they show in those lanes; elsewhere what `quick` does.
+template <PairKind kind, class L>
+FASTCCD_INLINE Separation<L> by_features(const SeparationRecord<L>& pair, const Separation<L>& quick, const SearchParameters& parameters)
+{
+    return separation_by_features<kind>(positions(pair.r, pair.at).r, quick, surely_certified(pair.extents, parameters.separation),
+                                        asks_features(pair, quick, parameters));
+}
+
+/// All of the look.
 template <PairKind kind, class L>
 FASTCCD_INLINE Separation<L> next_look(const SeparationRecord<L>& pair, const SearchParameters& parameters)
 {
-    return separation_beyond<kind>(positions(pair.r, pair.at).r, surely_certified(pair.extents, parameters.separation));
+    const Separation<L> quick = quick_look<kind>(pair);
+    return Lane<L>::bits(asks_features(pair, quick, parameters)) == 0 ? quick : by_features<kind>(pair, quick, parameters);
 }
 
 /// What follows from next_look(), which has shown `separation`.

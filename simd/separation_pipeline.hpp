@@ -176,33 +176,51 @@ private:
 
     /// A step of all pairs on their way; those that go on move to the front. First all looks, then what follows from them: a look is one
     /// chain of operations, with three divisions and a root in it, and a processor overlaps it with the next as far as it sees that
-    /// (bench/LIMITS_SEARCH.md).
+    /// (bench/LIMITS_SEARCH.md). So features are not asked for in between.
     void advance()
     {
         AdvancingQueue& queue = scratch_.advancing;
         const unsigned size = queue.size;
         if (first_new_ < size) guess_contacts(first_new_);
-        for (unsigned i = 0; i < size; i += width) look_again(i);
+        unsigned open = 0;
+        for (unsigned i = 0; i < size; i += width) look_again(i, open);
+        for (unsigned k = 0; k < open; ++k) ask_for_features(scratch_.looks.open[k]);
         queue.size = 0;
         for (unsigned i = 0; i < size; i += width) step_on(i, lanes_in_use<L>(size - i));
         first_new_ = queue.size;
     }
 
-    FASTCCD_INLINE void look_again(unsigned i)
+    FASTCCD_INLINE Separation<L> seen_at(unsigned i) const
     {
-        const Separation<L> seen = next_look<kind>(record_at(i), parameters_);
+        const Looks& looks = scratch_.looks;
+        return {load<L>(looks.n, 0, i), Lane<L>::load(&looks.gap[i]), Lane<L>::load(&looks.square_to_side[i])};
+    }
+
+    /// The looks at pairs i, i + 1, ..., but for features: lists them in place `open` if those are to be asked for.
+    FASTCCD_INLINE void look_again(unsigned i, unsigned& open)
+    {
+        const SeparationRecord<L> record = record_at(i);
+        const Separation<L> seen = quick_look<kind>(record);
         Looks& looks = scratch_.looks;
         store(looks.n, 0, i, seen.n);
         Lane<L>::store(&looks.gap[i], seen.gap);
         Lane<L>::store(&looks.square_to_side[i], seen.square_to_side);
+        looks.open[open] = i;
+        open += Lane<L>::bits(asks_features(record, seen, parameters_)) != 0 ? 1 : 0;
+    }
+
+    /// For pairs i, i + 1, ... as look_again() has left them.
+    __attribute__((noinline)) void ask_for_features(unsigned i)
+    {
+        const Separation<L> best = by_features<kind>(record_at(i), seen_at(i), parameters_);
+        store(scratch_.looks.n, 0, i, best.n);
+        Lane<L>::store(&scratch_.looks.gap[i], best.gap);
     }
 
     FASTCCD_INLINE void step_on(unsigned i, unsigned lanes)
     {
         SeparationRecord<L> record = record_at(i);
-        const Looks& looks = scratch_.looks;
-        const Separation<L> seen{load<L>(looks.n, 0, i), Lane<L>::load(&looks.gap[i]), Lane<L>::load(&looks.square_to_side[i])};
-        const StepOutcome<L> outcome = step<kind>(record, seen, parameters_, limit_);
+        const StepOutcome<L> outcome = step<kind>(record, seen_at(i), parameters_, limit_);
         const unsigned contact = lanes & Lane<L>::bits(outcome.contact);
         if (contact != 0) record_contacts(record, contact, Lane<L>::bits(outcome.proven));
         const unsigned left = lanes & Lane<L>::bits(outcome.left);
