@@ -134,7 +134,7 @@ bool has_near_misses(const std::string& family)
 
 TEST(Truth, MadePairs)
 {
-    constexpr std::size_t pairs_per_family = 400;
+    constexpr std::size_t pairs_per_family = amount(400);
     constexpr std::uint64_t seed = 20;
     for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
         for (const std::string& family : families()) {
@@ -188,7 +188,7 @@ TEST(Truth, RegularContactIsFoundWithinTheTolerance)
 {
     std::vector<oracle::Pair> pairs;
     for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
-        generate("uniform", kind, 22, 2000, pairs);
+        generate("uniform", kind, 22, amount(2000), pairs);
         for (const double tolerance : tolerances) {
             Options options;
             options.tolerance = tolerance;

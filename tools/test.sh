@@ -29,8 +29,10 @@ $all || exit 0
 
 unset CMAKE_CXX_COMPILER_LAUNCHER CCACHE_DIR
 source "$root/tools/test_all.sh"
+install_for_all
 test_sanitized_and_fuzz
 test_races
 test_other_machines
 test_other_compiler
+finish_beside
 say "all passed"

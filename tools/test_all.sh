@@ -2,6 +2,16 @@
 
 lacks_avx512() { [[ $("$build/tests/fastccd_digest" 1 2>&1) == *'lacks avx512'* ]]; }
 
+# All at once: what runs beside a build (below) may install packages too.
+install_for_all() {
+  local packages=(clang libclang-rt-dev clang-19)
+  if [ "$(uname -m)" = x86_64 ]; then
+    [[ $(dpkg --print-foreign-architectures) == *arm64* ]] || as_root dpkg --add-architecture arm64
+    packages+=(qemu-user-static g++-aarch64-linux-gnu libtbb-dev:arm64 libxsimd-dev:arm64 libgmp-dev:arm64 libgtest-dev:arm64)
+  fi
+  install_packages "${packages[@]}"
+}
+
 # For instrumented builds, whose kernel for AVX-512 takes longest of all to compile; without AVX-512 only the ordinary one is run, emulated.
 avx512_if_here() { lacks_avx512 && echo OFF || echo ON; }
 
@@ -10,7 +20,6 @@ avx512_if_here() { lacks_avx512 && echo OFF || echo ON; }
 test_sanitized_and_fuzz() {
   local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized avx512
   avx512=$(avx512_if_here)
-  install_packages clang libclang-rt-dev
   CC=clang CXX=clang++ build=$sanitized configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=address,undefined \
     -DFASTCCD_FUZZERS=ON -DFASTCCD_AVX512=$avx512 -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON
   say "testing with sanitizers"
@@ -43,6 +52,29 @@ fuzz() {
   printf '%s: %s\n' "$(basename "$fuzzer")" "$(grep DONE "$log")"
 }
 
+# beside NAME COMMAND...: runs it while the next builds go on, since by itself it would leave a core idle; finish_beside says how it went.
+besides=() beside_jobs=()
+beside() {
+  local name=$1
+  shift
+  say "$name, begun"
+  set -m  # a process group of its own, to stop all of it
+  "$@" >"$build/beside-${#besides[@]}.txt" 2>&1 &
+  set +m
+  besides+=("$name") beside_jobs+=($!)
+}
+trap 'for job in "${beside_jobs[@]}"; do kill -- "-$job" 2>/dev/null; done' EXIT
+
+finish_beside() {
+  local i failed=0
+  for i in "${!besides[@]}"; do
+    say "${besides[i]}"
+    wait "${beside_jobs[i]}" || { failed=1; echo "failed:"; } >&2
+    cat "$build/beside-$i.txt"
+  done
+  return $failed
+}
+
 # ThreadSanitizer on the scheduler, with a stand-in for oneTBB (tests/thread_sanitizer/tbb/workers.h says why). By g++, because clang 14
 # leaves out loads and stores of 32 and 64 bytes, and most of those of the wide kernels are such.
 test_races() {
@@ -50,52 +82,43 @@ test_races() {
   avx512=$(avx512_if_here)
   CXX=g++ build=$races configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=thread -DFASTCCD_AVX512=$avx512 \
     -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- race_test
-  say "looking for races"
   # Newer kernels scatter addresses more widely than the ThreadSanitizer of g++ 12 expects; some containers cannot switch that off.
   "${fixed_addresses[@]}" true 2>/dev/null || fixed_addresses=()
-  TSAN_OPTIONS="halt_on_error=1 history_size=7" "${fixed_addresses[@]}" "$races/tests/thread_sanitizer/race_test" --gtest_brief=1
+  beside "looking for races" env TSAN_OPTIONS="halt_on_error=1 history_size=7" "${fixed_addresses[@]}" \
+    "$races/tests/thread_sanitizer/race_test" --gtest_brief=1
 }
 
 # The same answers, bit by bit, as on this machine: without AVX (the wide kernels must not even be touched), with AVX-512 if this one has
 # none, and from NEON lanes.
 test_other_machines() {
-  local here=$build/digest-here.txt pairs=60 arm64=$build-arm64 avx512=
+  local here=$build/digest-here.txt pairs=60 arm64=$build-arm64
   if [ "$(uname -m)" != x86_64 ]; then
     say "emulated machines: only from x86-64"
     return 0
   fi
-  [[ $(dpkg --print-foreign-architectures) == *arm64* ]] || as_root dpkg --add-architecture arm64
-  install_packages qemu-user-static g++-aarch64-linux-gnu libtbb-dev:arm64 libxsimd-dev:arm64 libgmp-dev:arm64 libgtest-dev:arm64
   "$build/tests/fastccd_digest" $pairs >"$here"
-
-  say "emulated x86-64 without AVX"
-  qemu-x86_64-static -cpu Nehalem "$build/tests/fastccd_digest" $pairs | cmp - "$here"
-  qemu-x86_64-static -cpu Nehalem "$build/tests/api_test" --gtest_brief=1
-
-  if lacks_avx512; then
-    say "emulated x86-64 with AVX-512, begun"
-    emulate_avx512 >"$build/avx512.txt" 2>&1 &
-    avx512=$!
-    trap 'kill '$avx512' 2>/dev/null' EXIT
-  fi
+  beside "emulated x86-64 without AVX" emulate_x86_without_avx
+  if lacks_avx512; then beside "emulated x86-64 with AVX-512" emulate_avx512; fi
 
   build=$arm64 configure_and_build "-DCMAKE_TOOLCHAIN_FILE=$root/tools/arm64.cmake" -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON \
     -DFASTCCD_BENCHMARKS=OFF -DFASTCCD_WERROR=ON -- fastccd_digest api_test boxes_test c_interface_test \
     floating_point_environment_test separation_bits_test
-  say "emulated arm64"
+  beside "emulated arm64" emulate_arm64
+  "$root/tests/exported_symbols_test.sh" "$arm64/libfastccd.so" "$root/tests/exported_symbols.txt"
+}
+
+emulate_x86_without_avx() {
+  qemu-x86_64-static -cpu Nehalem "$build/tests/fastccd_digest" $pairs | cmp - "$here"
+  qemu-x86_64-static -cpu Nehalem "$build/tests/api_test" --gtest_brief=1
+}
+
+emulate_arm64() {
   qemu-aarch64-static "$arm64/tests/fastccd_digest" $pairs | cmp - "$here"
   qemu-aarch64-static "$arm64/tests/api_test" --gtest_brief=1
   qemu-aarch64-static "$arm64/tests/boxes_test" --gtest_brief=1
   qemu-aarch64-static "$arm64/tests/separation_bits_test" --gtest_brief=1 --gtest_filter='SeparationBits.IsasOnMadePairs'
   qemu-aarch64-static "$arm64/tests/c_interface_test"
   qemu-aarch64-static "$arm64/tests/floating_point_environment_test" --gtest_brief=1 --gtest_filter='*OfFewPairs'
-  "$root/tests/exported_symbols_test.sh" "$arm64/libfastccd.so" "$root/tests/exported_symbols.txt"
-
-  [ -n "$avx512" ] || return 0
-  say "emulated x86-64 with AVX-512"
-  wait "$avx512" || { cat "$build/avx512.txt" >&2; return 1; }
-  trap - EXIT
-  cat "$build/avx512.txt"
 }
 
 # Two to three minutes on one core, hence few pairs: the lanes' and the intervals' kernels, those with a separation, boxes, a small stack.
@@ -112,8 +135,7 @@ EOF
 
 # The newest compiler of Debian 12 besides g++ 12, and clang 14 that test_sanitized_and_fuzz uses: the library, and the same answers.
 test_other_compiler() {
-  local here=$build/digest-here.txt pairs=60 clang19=$build-clang19
-  install_packages clang-19
+  local here=$build/digest-of-gcc.txt pairs=60 clang19=$build-clang19
   "$build/tests/fastccd_digest" $pairs >"$here"
   CC=clang-19 CXX=clang++-19 build=$clang19 configure_and_build -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF \
     -DFASTCCD_WERROR=ON -- fastccd_digest api_test c_interface_test adapters_test
