@@ -63,7 +63,7 @@ beside() {
   set +m
   besides+=("$name") beside_jobs+=($!)
 }
-trap 'for job in "${beside_jobs[@]}"; do kill -- "-$job" 2>/dev/null; done' EXIT
+trap 'for job in "${beside_jobs[@]}"; do kill -- "-$job" 2>/dev/null || true; done' EXIT
 
 finish_beside() {
   local i failed=0
@@ -72,6 +72,7 @@ finish_beside() {
     wait "${beside_jobs[i]}" || { failed=1; echo "failed:"; } >&2
     cat "$build/beside-$i.txt"
   done
+  beside_jobs=()
   return $failed
 }
 
