@@ -55,11 +55,12 @@ struct Meeting {
     LaneMask<L> present, proven;  ///< Proven: in its leaf, or around it.
 };
 
-/// Whether a pair meets at `time`, where directions that have kept it apart end, of the lanes in `asked`.
+/// Whether a pair meets at `time`, where directions that have kept it apart end, of the lanes in `asked`. Not at 0: what meets there has been
+/// answered (in_contact_at_start), as meets_at() of a leaf leaves more for rounding than its bounds have for parts.
 template <PairKind kind, class L>
 __attribute__((noinline)) Meeting<L> meeting_after_directions(const PairCoefficientsOf<L>& pair, L time, double leaf_width, LaneMask<L> asked)
 {
-    Meeting<L> found{asked & less(broadcast<L>(0.0), time), no_lanes<L>()};
+    Meeting<L> found{asked, no_lanes<L>()};
     if (Lane<L>::bits(found.present) != 0) found.present = found.present & !apart_by_area_on<kind>(pair, time, time);
     if (Lane<L>::bits(found.present) == 0) return found;
     const L left = leaf_start(time, leaf_width);

@@ -378,7 +378,6 @@ mutant 'features: lanes do not ask' simd/separation_pipeline.hpp 's/k < open; \+
 mutant 'features: lanes ask for the last batch alone' simd/separation_pipeline.hpp 's/looks\.open\[open\] = i;/looks.open[0] = i;/' separation_bits_test
 mutant 'along: meets, whatever certificates say' $along 's/found\.present & meets_at<kind>[^;]*;/found.present;/' nothing_invented_test touching_test
 mutant 'along: meets, whatever eq. 7 says' $along 's/found\.present & !apart_by_area_on[^;]*;/found.present;/' nothing_invented_test ordered_search_test
-mutant 'along: at time 0' $along 's/asked & less\(broadcast<L>\(0\.0\), time\)/asked/' never_zero_test touching_test same_bits_test
 mutant 'along: apart to the end of a direction' $along 's/less\(one, seen\.until\)/less(broadcast<L>(0.5), seen.until)/' truth_test same_bits_test
 mutant 'along: lanes answer where directions go on' simd/touching_pairs.hpp 's/along\.asked & !\(along\.goes_on \| along\.apart\)/along.asked/' touching_test same_bits_test
 mutant 'along: lanes ask in leaves that eq. 7 clears' simd/touching_pairs.hpp 's/unanswered & !apart_by_area_on[^;]*;/unanswered;/' touching_test same_bits_test

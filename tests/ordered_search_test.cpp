@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <random>
+#include <string_view>
 
 #include <certified_search.hpp>
 #include <interval_certificates.hpp>
@@ -253,8 +254,14 @@ TEST(OrderedSearch, ContactAtTheStartTakesOneLook)
     std::vector<oracle::Pair> pairs;
     for (const auto kind : kinds) {
         AtStart seen;
-        for (const char* family : {"resting", "t0_contact", "zero_cubic", "collinear", "degenerate", "pointpoint", "f32_resting"}) {
-            generate(family, kind, 304, 1000, pairs);
+        ThinPairs thin{kind, 308};
+        for (const char* family : {"resting", "t0_contact", "zero_cubic", "collinear", "degenerate", "pointpoint", "f32_resting", "thin"}) {
+            if (family == std::string_view{"thin"}) {
+                pairs.resize(1000);
+                for (oracle::Pair& pair : pairs) pair = thin.next_closest_at(0.0);
+            } else {
+                generate(family, kind, 304, 1000, pairs);
+            }
             // And the same next to contact, by 2^-56 to 2^-20 of a coordinate: where bounds decide.
             const std::size_t given = pairs.size();
             for (std::size_t i = 0; i < given; ++i) {

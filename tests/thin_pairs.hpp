@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -16,7 +17,8 @@ class ThinPairs {
 public:
     ThinPairs(oracle::Kind kind, std::uint64_t seed) : kind_{kind}, bits_{seed} {}
 
-    oracle::Pair next()
+    /// `closest`: when they are that; otherwise at some time.
+    oracle::Pair next_closest_at(std::optional<double> closest)
     {
         const bool vertex_face = kind_ == oracle::Kind::vertex_face;
         const double width = decades(-14, 0), height = 0.1 * decades(-14, 0), length = decades(-8, 0), travel = decades(-8, 0);
@@ -39,7 +41,7 @@ public:
                 for (int k = 0; k < 2; ++k) at[i][k] = quadrant[i][k] * uniform(0, 1) * (i < 2 ? 1.0 : shrink);
             at[0][2] = at[1][2] = height;
         }
-        const double passing = uniform(0, 1);
+        const double some_time = uniform(0, 1), passing = closest.value_or(some_time);
         const double velocity[2] = {uniform(-travel, travel), uniform(-travel, travel)};
         oracle::Pair pair;
         for (std::size_t i = 0; i < 4; ++i)
@@ -54,6 +56,8 @@ public:
             }
         return pair;
     }
+
+    oracle::Pair next() { return next_closest_at(std::nullopt); }
 
     std::vector<oracle::Pair> next(std::size_t n)
     {
