@@ -15,4 +15,7 @@ inline constexpr bool sanitized = false;
 /// no rare numbers to find them, and take ten times as long.
 constexpr std::size_t amount(std::size_t all) { return sanitized ? (all + 15) / 16 : all; }
 
+/// The largest public scene takes them as long as all others of a test together, and has nothing for them to see that the others have not.
+constexpr bool too_large_for_sanitizers(std::size_t candidates) { return sanitized && candidates > 10'000'000; }
+
 }  // namespace fastccd::testing

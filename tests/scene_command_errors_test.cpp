@@ -191,9 +191,9 @@ int status_after_signal(const Arguments& arguments, int signal, const std::strin
 
 TEST(SceneCommandErrors, SignalsLeaveNothing)
 {
+    const ScratchDirectory directory;
+    const std::vector<std::string> frames = make_scene(directory, "100", "60");
     for (const int signal : {SIGINT, SIGTERM}) {
-        const ScratchDirectory directory;
-        const std::vector<std::string> frames = make_scene(directory, "100", "60");
         const std::string pairs = directory / "pairs";
         // The files of the first two steps are there, under names of their own, when the signal comes.
         const int status = status_after_signal(

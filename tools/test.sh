@@ -2,8 +2,8 @@
 # Sets everything up, builds with warnings as errors, runs all tests.
 #
 #   tools/test.sh [ARGUMENT...]   arguments go to ctest
-#   tools/test.sh --all           and then: sanitizers, short fuzzing, races, an emulated x86-64 without AVX, one with AVX-512 if
-#                                 this one has none, an emulated arm64, clang 19
+#   tools/test.sh --all           and then: sanitizers, short fuzzing, an emulated x86-64 without AVX, one with AVX-512 if this one has
+#                                 none, an emulated arm64, races, clang 19
 source "$(dirname "$0")/setup.sh"
 
 all=false
@@ -31,8 +31,8 @@ unset CMAKE_CXX_COMPILER_LAUNCHER CCACHE_DIR
 source "$root/tools/test_all.sh"
 install_for_all
 test_sanitized_and_fuzz
+test_other_machines  # emulated, what runs beside takes longest
 test_races
-test_other_machines
 test_other_compiler
 finish_beside
 say "all passed"
