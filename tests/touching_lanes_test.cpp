@@ -1,4 +1,4 @@
-// Lanes that are asked whether a pair touches (simd/touching_pairs.hpp) say what the search does, bit for bit.
+// Lanes that are asked whether a pair touches (simd/touching_pairs.hpp) say what the search does, bit for bit; and so do all stages together.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
+#include "thin_pairs.hpp"
 #include "touching_pairs_made.hpp"
 
 namespace fastccd::testing {
@@ -245,6 +246,39 @@ TEST(Touching, GrazingPairsAreDecidedByLanes)
                 EXPECT_LT(summary.scalar_pairs, pairs.size() / 50);
             }
         }
+}
+
+/// Whoever decides a pair, lanes at some stage or the search, says when it is first in contact with the same bits: the search alone defines it.
+TEST(Touching, AnswersOfAllStagesAreTheSearchs)
+{
+    std::size_t compared = 0, contacts = 0;
+    for (const auto kind : kinds)
+        for (const double tolerance : {1e-6, 1e-9, 1e-12})
+            for (const double t_max : {1.0, 0.7}) {
+                const SearchParameters parameters{tolerance, t_max, false};
+                const auto compare = [&](const std::vector<oracle::Pair>& pairs, const std::string& what) {
+                    std::vector<double> expected;
+                    for (const oracle::Pair& pair : pairs)
+                        expected.push_back(scalar::certified_search(pair_kind(kind), pair[0].data(), parameters).toi);
+                    for (const Isa isa : isas_to_test()) {
+                        Options options;
+                        options.tolerance = tolerance;
+                        options.t_max = t_max;
+                        options.isa = isa;
+                        for (const Answer& found : {answer(kind, interleaved(pairs), options), answer_without_roots(kind, interleaved(pairs), options)})
+                            for (std::size_t i = 0; i < pairs.size(); ++i)
+                                ASSERT_EQ(found.toi[i], expected[i]) << what << ' ' << name(isa) << ": " << lossless(pairs[i]);
+                    }
+                    compared += pairs.size();
+                    contacts += static_cast<std::size_t>(std::count_if(expected.begin(), expected.end(), [](double toi) { return toi <= 1.0; }));
+                };
+                for_each_family(kind, 816, amount(400), compare);
+                compare(ThinPairs{kind, 817}.next(amount(20000)), "thin");
+                if (HasFatalFailure()) return;
+            }
+    std::printf("%zu answers, %zu of them contacts\n", compared, contacts);
+    EXPECT_GT(contacts, amount(50000));
+    EXPECT_GT(compared - contacts, amount(50000));
 }
 
 }  // namespace
