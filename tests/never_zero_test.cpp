@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
@@ -75,13 +76,17 @@ TEST(NeverZero, ThinPairs)
 }
 
 /// Contact after 2^-1 .. 2^-46 of the step: a vertex, or edge, at that height above the other primitive, both in general
-/// position. The lower bound is to be positive and near the exact time, in relative terms.
+/// position, or in that of a family. The lower bound is to be positive and near the exact time, in relative terms.
 TEST(NeverZero, ContactsSoonAfterTheStart)
 {
     std::size_t near_zero = 0;
     for (const auto kind : kinds) {
-        std::vector<oracle::Pair> start, pairs;
+        std::vector<oracle::Pair> start, some, pairs;
         generate("uniform", kind, 93, 4000, start);
+        for (const std::string& family : families()) {
+            generate(family, kind, 94, amount(100), some);
+            start.insert(start.end(), some.begin(), some.end());
+        }
         // A pair in contact at a time t, made to start at t - t 2^-k.
         for (std::size_t i = 0; i < start.size(); ++i) {
             const oracle::Verdict verdict = oracle::exact_ccd(kind, start[i]);
