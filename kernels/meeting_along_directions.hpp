@@ -56,7 +56,8 @@ struct Meeting {
 };
 
 /// Whether a pair meets at `time`, where directions that have kept it apart end, of the lanes in `asked`. Not at 0: what meets there has been
-/// answered (in_contact_at_start), as meets_at() of a leaf leaves more for rounding than its bounds have for parts.
+/// answered (in_contact_at_start), as meets_at() of a leaf leaves more for rounding (meeting.hpp) than its bounds have for parts
+/// (restriction.hpp). Rounding of eq. 7 alone could tell otherwise: of a pair that directions do not tell from one in contact at 0.
 template <PairKind kind, class L>
 __attribute__((noinline)) Meeting<L> meeting_after_directions(const PairCoefficientsOf<L>& pair, L time, double leaf_width, LaneMask<L> asked)
 {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdio>
 
 namespace fastccd::testing {
 
@@ -15,7 +16,12 @@ inline constexpr bool sanitized = false;
 /// no rare numbers to find them, and take ten times as long.
 constexpr std::size_t amount(std::size_t all) { return sanitized ? (all + 15) / 16 : all; }
 
-/// The largest public scene takes them as long as all others of a test together, and has nothing for them to see that the others have not.
-constexpr bool too_large_for_sanitizers(std::size_t candidates) { return sanitized && candidates > 10'000'000; }
+/// The largest public scene takes them as long as all others of a test together. Says so.
+inline bool too_large_for_sanitizers(std::size_t candidates)
+{
+    const bool is = sanitized && candidates > 10'000'000;
+    if (is) std::fprintf(stderr, "NOT TESTED with sanitizers: a scene of %zu candidates\n", candidates);
+    return is;
+}
 
 }  // namespace fastccd::testing

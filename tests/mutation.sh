@@ -381,8 +381,8 @@ mutant 'along: meets, whatever eq. 7 says' $along 's/found\.present & !apart_by_
 mutant 'along: apart to the end of a direction' $along 's/less\(one, seen\.until\)/less(broadcast<L>(0.5), seen.until)/' truth_test same_bits_test
 mutant 'along: lanes answer where directions go on' simd/touching_pairs.hpp 's/along\.asked & !\(along\.goes_on \| along\.apart\)/along.asked/' touching_test same_bits_test
 mutant 'along: lanes ask in leaves that eq. 7 clears' simd/touching_pairs.hpp 's/unanswered & !apart_by_area_on[^;]*;/unanswered;/' touching_test same_bits_test
-# Not that the search asks once, and not in a leaf that eq. 7 clears: so that it asks where lanes do. Without either, it still says what lanes
-# do of 9.7 million pairs of all families and thin ones (as touching_test compares them, of fewer).
+# Not that the search asks once, nor that it does not in a leaf that eq. 7 clears: so that it asks where lanes do. Without the one, and without
+# the other, it still says what scalar lanes do of 9.7 million pairs of all families and thin ones (as touching_test compares them, of fewer).
 mutant 'along: not on beyond the leaf' scalar/leaf_search.hpp 's/go_on_at\(time\);\s*if \(leaf\.b <= time\) return none;//' nothing_invented_test
 mutant 'along: distances do not double' scalar/separation_search.cpp 's/looks_to_double = 16/looks_to_double = 1e9/' bounded_test
 mutant 'separation: what is shown does not count as close' kernels/separation_steps.hpp 's/\(less_equal\(distance, close\) \| less_equal\(gap, shown\)\)/less_equal(distance, close)/' bounded_test

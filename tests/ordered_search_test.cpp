@@ -271,6 +271,7 @@ TEST(OrderedSearch, ContactAtTheStartTakesOneLook)
                 pairs.push_back(moved);
             }
             const std::string what = std::string(kind_name(kind)) + " " + family;
+            const std::size_t seen_before = seen.pairs;
             for (const double tolerance : {1.0, 1e-3, 1e-9, 1e-14})
                 for (const double t_max : {1.0, 0.7}) {
                     const SearchParameters parameters{tolerance, t_max, false};
@@ -279,6 +280,7 @@ TEST(OrderedSearch, ContactAtTheStartTakesOneLook)
                     else
                         compare_with_walk<PairKind::edge_edge>(pairs, parameters, what, seen);
                 }
+            EXPECT_GT(seen.pairs, seen_before) << "none of these begins in contact: " << what;
         }
         EXPECT_GT(seen.pairs, 20000u);
         EXPECT_EQ(seen.not_foreseen, 0u) << "of " << seen.pairs;
