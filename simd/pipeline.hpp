@@ -128,8 +128,10 @@ private:
         const double* const blocks = source_.group(first);
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
+            const Parts<S, L> parts = next_parts<S>(source_, blocks, i, count);
+            ask_ahead(source_, parts);
             PairRecord<S> record;
-            record.r = relative_motion_in<S, L>(next_parts<S>(source_, blocks, i, count).at, block_pairs, parameters_.t_max);
+            record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
             kept |= std::uint64_t{found.kept} << i;
             beyond |= std::uint64_t{found.beyond} << i;
@@ -179,24 +181,42 @@ private:
         return screen(record);
     }
 
-    /// Where most pairs go on: straight to the certificates on both halves, without a queue.
+    /// Where most pairs go on: straight to the certificates on both halves, without a queue. To queue what is left of a batch waits for all
+    /// its comparisons; so the next batch is read before that, its last one twice, as a branch there would cost what is gained. Not with
+    /// lanes of 512 bits, for which a batch is a quarter of a group (bench/LIMITS.md).
     void screen_dense_group(std::size_t first, std::size_t count)
     {
         using S = typename Lane<L>::Screening;
+        constexpr bool reads_ahead = Lane<L>::width < most_lanes;
         const double* const blocks = source_.group(first);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count; i += Lane<S>::width) {
-            const Parts<S, L> parts = next_parts<S>(source_, blocks, i, count);
-            PairRecord<S> record;
+        Parts<S, L> parts;
+        PairRecord<S> record;
+        const auto read_batch = [&](std::size_t i) FASTCCD_INLINE_LAMBDA {
+            parts = next_parts<S>(source_, blocks, i, count);
+            if constexpr (!reads_ahead) ask_ahead(source_, parts);
             record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
+        };
+
+        std::size_t kept = 0;
+        if constexpr (reads_ahead) read_batch(0);
+        for (std::size_t i = 0; i < count; i += Lane<S>::width) {
+            if constexpr (reads_ahead)
+                source_.at_batch(parts.at[0]);
+            else
+                read_batch(i);
             const Screening found = screen(record);
             const unsigned in_use = lanes_in_use<S>(count - i);
             if ((in_use & found.beyond) != 0) kept += examine_again(parts, first + i, in_use & found.beyond);
             unsigned lanes = in_use & found.kept;
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
+            const Parts<S, L> examined = parts;
+            if constexpr (reads_ahead) {
+                ask_ahead(source_, parts, 1);
+                read_batch(i + Lane<S>::width < count ? i + Lane<S>::width : i);
+            }
             if (cutoff_ < 1.0 && lanes == 0) continue;
-            queue_parts(scratch_.candidates, source_, parts, first + i, mark, lanes, parameters_.t_max);
+            queue_parts(scratch_.candidates, source_, examined, first + i, mark, lanes, parameters_.t_max);
             root_stages_.find_roots_if_many();
         }
         // Less than what leads here, so that shares around one half do not go to and fro.

@@ -29,9 +29,15 @@ FASTCCD_INLINE Parts<S, L> next_parts(BlockSource<kind, L>& source, const double
         const std::size_t j = i + k * Lane<L>::width < count ? i + k * Lane<L>::width : i;
         if (j % block_pairs == 0) source.at_block();
         parts.at[k] = in_blocks(blocks, j);
-        source.at_batch(parts.at[k]);
     }
     return parts;
+}
+
+/// Once for every part that is read: asks for memory ahead of those from `first` on.
+template <class S, PairKind kind, class L>
+FASTCCD_INLINE void ask_ahead(BlockSource<kind, L>& source, const Parts<S, L>& parts, unsigned first = 0)
+{
+    for (unsigned k = first; k < Parts<S, L>::count; ++k) source.at_batch(parts.at[k]);
 }
 
 /// Appends lanes of part k of what was screened. Its motion is computed again: kept, it would be through memory as well.

@@ -43,8 +43,11 @@ public:
         for (std::size_t first = 0; first < size; first += group_pairs) {
             const double* const blocks = pipeline.source_.group(first);
             const std::size_t count = size - first < group_pairs ? size - first : group_pairs;
-            for (std::size_t i = 0; i < count; i += Lane<Screening>::width)
-                pipeline.screen(next_parts<Screening>(pipeline.source_, blocks, i, count), first + i, lanes_in_use<Screening>(count - i));
+            for (std::size_t i = 0; i < count; i += Lane<Screening>::width) {
+                const Parts<Screening, L> parts = next_parts<Screening>(pipeline.source_, blocks, i, count);
+                ask_ahead(pipeline.source_, parts);
+                pipeline.screen(parts, first + i, lanes_in_use<Screening>(count - i));
+            }
         }
         pipeline.look_first(1);
         while (scratch.advancing.size > 0) pipeline.advance();
