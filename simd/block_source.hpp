@@ -161,7 +161,7 @@ public:
         rate_ = pair * 2 / 3;
     }
 
-    /// Before the next `pairs` of the block at `address` are read. Memory answers at its own pace: more than it can deliver while they
+    /// Once for every `pairs` of the block at `address`, about when they are read. Memory answers at its own pace: more than it can deliver while they
     /// are screened is asked for only where it would not be there in time otherwise. The rest is asked for by meanwhile(), so that
     /// the rate is even.
     FASTCCD_INLINE void at_pairs(const void* address, std::size_t pairs)
@@ -273,8 +273,9 @@ public:
     /// Where all blocks of the tile lie, or those of the group.
     [[nodiscard]] FASTCCD_INLINE const double* blocks() const { return is_in_place() ? in_place_ : scratch_.blocks[0]; }
 
-    /// Before a batch of a block of the group is read. Batch by batch, although 8 blocks lie between what is asked for and what is
-    /// read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/LIMITS.md).
+    /// Once for every batch of a block of the group, before it is read or soon after. Batch by batch, although 8 blocks lie between what is
+    /// asked for and what is read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family
+    /// 25 (bench/LIMITS.md).
     FASTCCD_INLINE void at_batch(const double* block)
     {
         if (is_in_place()) prefetcher_.at_pairs(block, Lane<Batch>::width);

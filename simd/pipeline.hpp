@@ -129,10 +129,10 @@ private:
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
             const Parts<S, L> parts = next_parts<S>(source_, blocks, i, count);
-            ask_ahead(source_, parts);
             PairRecord<S> record;
             record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
+            ask_ahead(source_, parts);  // by 2 to 4 % faster than before they are read (bench/LIMITS.md)
             kept |= std::uint64_t{found.kept} << i;
             beyond |= std::uint64_t{found.beyond} << i;
         }
