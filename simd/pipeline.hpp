@@ -132,7 +132,7 @@ private:
             PairRecord<S> record;
             record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
             const Screening found = screen(record);
-            ask_ahead(source_, parts);  // by 2 to 4 % faster than before they are read (bench/LIMITS.md)
+            ask_ahead(source_, parts);  // here 1 to 4 % faster than before the batch is read (bench/LIMITS.md)
             kept |= std::uint64_t{found.kept} << i;
             beyond |= std::uint64_t{found.beyond} << i;
         }
@@ -182,8 +182,8 @@ private:
     }
 
     /// Where most pairs go on: straight to the certificates on both halves, without a queue. To queue what is left of a batch waits for all
-    /// its comparisons; so the next batch is read before that, its last one twice, as a branch there would cost what is gained. Not with
-    /// lanes of 512 bits, for which a batch is a quarter of a group (bench/LIMITS.md).
+    /// its comparisons; so the next batch is read before that, the last one twice, as a branch there would cost most of what is gained. Not
+    /// with lanes of 512 bits, which gain nothing by it from memory (bench/LIMITS.md).
     void screen_dense_group(std::size_t first, std::size_t count)
     {
         using S = typename Lane<L>::Screening;
