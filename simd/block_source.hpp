@@ -161,9 +161,9 @@ public:
         rate_ = pair * 2 / 3;
     }
 
-    /// Once for every `pairs` of the block at `address`, about when they are read. Memory answers at its own pace: more than it can deliver while they
-    /// are screened is asked for only where it would not be there in time otherwise. The rest is asked for by meanwhile(), so that
-    /// the rate is even.
+    /// Once for every `pairs` of the block at `address`, about when they are read. Memory answers at its own pace: more than it can
+    /// deliver while they are screened is asked for only where it would not be there in time otherwise. The rest is asked for by
+    /// meanwhile(), so that the rate is even.
     FASTCCD_INLINE void at_pairs(const void* address, std::size_t pairs)
     {
         auto at = reinterpret_cast<std::uintptr_t>(address);
