@@ -368,8 +368,8 @@ mutant 'separation: lanes keep what is to be followed' simd/separation_pipeline.
 mutant 'separation: following, middle not asked' $following 's/k < 5; \+\+k\) all/k < 5; k += 2) all/' error_bounds_test
 mutant 'separation: following, d not asked for' $following 's/parameters\.threshold \* length\(v\) \+/0.0 * length(v) +/' error_bounds_test
 mutant 'separation: following goes over the window' scalar/separation_search.cpp 's/time = past_window\(pair, end\)/time = past_window(pair, end + stretch)/' separation_test
-mutant 'separation: normals that vanish' kernels/separating_direction.hpp 's/less\(broadcast<L>\(smallest_square\), normal_square\) &\s*//' separation_test
-mutant 'separation: corners from the far end' kernels/separating_direction.hpp 's/less\(squares\[j\], squares\[i\]\)/less(squares[i], squares[j])/' separation_test
+mutant 'separation: normals that vanish' kernels/separating_direction.hpp 's/less\(broadcast<L>\(smallest_square\), normal_square\) &\s*//' error_bounds_test
+mutant 'separation: corners from the far end' kernels/separating_direction.hpp 's/less\(squares\[j\], squares\[i\]\)/less(squares[i], squares[j])/' error_bounds_test
 
 # ---- Directions of all features, and where they lead
 features=kernels/feature_directions.hpp along=kernels/meeting_along_directions.hpp
