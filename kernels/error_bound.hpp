@@ -1,4 +1,5 @@
-// Every rounding error bound of the library, derived, in multiples of u = 2^-53.
+// The rounding error bounds of cubic, edge functions and areas, derived, in multiples of u = 2^-53. Those of distances are in separation_bound.hpp
+// and feature_directions.hpp, of looks at one time in meeting.hpp, of parts of the interval in restriction.hpp, of extents in magnitudes.hpp.
 //
 // Notation. X, Y, Z: the extents of the pair (relative_motion.hpp), V = X Y Z. A computed
 // component of r_i differs from the exact one by at most rho u X (Y, Z): rho = 1 where r_i is one
@@ -89,7 +90,7 @@ struct ErrorBounds {
     // ---- Values and coefficients over part of the interval (blossoms, bernstein.hpp) ------------
 
     // One lerp errs by 3 u M, M the larger magnitude of its operands (1-s, product, sum; and product,
-    // sum), so n levels on coefficients of size M add 3 n u M.
+    // sum), so n levels on coefficients of size M add 3 n u M. (By 2.5 u M at most, as meeting.hpp counts it.)
 
     /// Blossom levels of the cubic: 3 levels, |f_k| <= 6 V.
     static constexpr double cubic_blossom_levels = 54.0;

@@ -29,12 +29,12 @@ void add_report_command(CLI::App& app)
     command
         ->add_option("--data", options->data,
                      "Also use public data: DIR/hardcases, DIR/queries, DIR/scenes,\nas far as they are there")
-        ->check(CLI::ExistingDirectory)
+        ->check(CLI::ExistingDirectory.description(""))
         ->type_name("DIR");
     command->add_flag("--quick", options->quick, "Fewer pairs, sizes and repeats: a minute instead of several");
     command->add_flag("--quiet", options->quiet, "No progress bar, and nothing on standard output");
     command->add_option("--draw", options->draw, "Measure nothing: draw page and pictures again from an earlier\nreport.json")
-        ->check(CLI::ExistingFile)
+        ->check(CLI::ExistingFile.description(""))
         ->excludes("--pairs", "--data", "--quick")
         ->type_name("FILE");
     command->callback([options] {

@@ -1,5 +1,6 @@
 #include "interrupt.hpp"
 
+#include <atomic>
 #include <csignal>
 #include <initializer_list>
 
@@ -9,7 +10,8 @@
 namespace fastccd::tools {
 namespace {
 
-volatile std::sig_atomic_t pending_signal = 0;
+std::atomic<int> pending_signal = 0;  // any thread may ask for it
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait");
 timespec first_signal{};
 bool broken_pipes_ignored = false;  // by who started the process
 
@@ -61,7 +63,7 @@ void install_signal_handlers()
 
 void check_interrupt()
 {
-    if (pending_signal != 0) throw Interrupted{pending_signal};
+    if (const int signal = pending_signal; signal != 0) throw Interrupted{signal};
 }
 
 }  // namespace fastccd::tools

@@ -16,7 +16,7 @@ struct BrokenPipe {};
 /// signal, and so does writing beyond the largest file allowed.
 void install_signal_handlers();
 
-/// Throws Interrupted if a signal has come in. Call it at least every tenth of a second of work.
+/// Throws Interrupted if a signal has come in. Call it at least every tenth of a second of work; from any thread.
 void check_interrupt();
 
 /// Ends the process by the signal, as if it had never been handled: a shell that runs a loop or a script goes on after a command

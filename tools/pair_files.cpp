@@ -8,6 +8,7 @@
 #include <fastccd/pair_buffer.hpp>
 
 #include "input_error.hpp"
+#include "mapped_file.hpp"
 #include "npy.hpp"
 #include "pair_slice.hpp"
 
@@ -21,6 +22,7 @@ std::variant<NpyPairs, RationalCsv> open(const std::filesystem::path& path, Roun
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".npy") return NpyPairs{path};
     if (extension == ".csv") return read_rational_csv(path, rounding);
+    const MappedFile readable{path};  // says that a file is missing, or a directory
     throw InputError(path, "is of an unknown kind; pairs are read from files whose names end in .npy or .csv, not through pipes");
 }
 

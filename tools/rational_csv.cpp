@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t rows_per_pair = 8;
 constexpr std::size_t coordinate_columns = 6;
 constexpr std::size_t most_columns = coordinate_columns + 1;
+constexpr std::size_t least_row = 2 * coordinate_columns;  ///< Bytes: digits, commas and a newline.
 
 constexpr std::array<std::string_view, most_columns> column_names{
     "x numerator", "x denominator", "y numerator", "y denominator", "z numerator", "z denominator", "truth"};
@@ -47,7 +48,9 @@ public:
     {
         const std::size_t rows =
             rest_.empty() ? 0 : 1 + static_cast<std::size_t>(std::count(rest_.begin(), rest_.end(), '\n'));
-        RationalCsv result{PairBuffer{rows / rows_per_pair}, {}};
+        // No more than there is text for: blank lines without end are to be refused with their row, not for want of memory.
+        const std::size_t most_rows = (rest_.size() + 1) / least_row;
+        RationalCsv result{PairBuffer{std::min(rows, most_rows) / rows_per_pair}, {}};
         for (row_ = 1; row_ <= rows; ++row_) {
             if (row_ % 65536 == 0) check_interrupt();
             split(next_line());

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "../interrupt.hpp"
 #include "box_tree.hpp"
 
 namespace fastccd::tools {
@@ -92,17 +93,20 @@ std::vector<Box> swept_boxes(const Step& step, std::size_t count, const Vertices
 
 // The search goes through the queries (vertices, or first edges) in rounds; a round's candidates
 // are one piece for the sink. The size of a round follows from the number of candidates in the one
-// before it, never from the number of threads.
+// before it, never from the number of threads. The first is small, and none is many times as large as
+// the one before it: where everything overlaps, a query alone has as many candidates as there are edges.
 constexpr std::size_t queries_per_task = 64;
 constexpr std::size_t most_queries_per_round = 128 * queries_per_task;
 constexpr std::size_t candidates_per_round = std::size_t{1} << 20;
+constexpr std::size_t most_growth = 8;
 
 std::size_t next_round(std::size_t queries, std::size_t candidates)
 {
     const std::size_t per_query = candidates / queries + 1;
     const std::size_t wanted =
         candidates_per_round / per_query / queries_per_task * queries_per_task;
-    return std::clamp(wanted, queries_per_task, most_queries_per_round);
+    const std::size_t most = std::clamp(most_growth * queries, queries_per_task, most_queries_per_round);
+    return std::clamp(wanted, queries_per_task, most);
 }
 
 // What one task found: the partners of query after query, and where each query's end.
@@ -121,7 +125,7 @@ void search(const BoxTree& tree, std::size_t query_count, const Find& find, cons
     std::vector<TaskResult> results(most_queries_per_round / queries_per_task);
     std::vector<Pair> piece;
 
-    std::size_t round = most_queries_per_round / 8;
+    std::size_t round = queries_per_task;
     for (std::size_t first = 0; first < query_count;) {
         const std::size_t last = std::min(first + round, query_count);
         const std::size_t tasks = (last - first + queries_per_task - 1) / queries_per_task;
@@ -132,6 +136,7 @@ void search(const BoxTree& tree, std::size_t query_count, const Find& find, cons
             const std::size_t begin = first + task * queries_per_task;
             const std::size_t end = std::min(begin + queries_per_task, last);
             for (std::size_t query = begin; query < end; ++query) {
+                check_interrupt();
                 const std::span<std::int32_t> partners = find(query, scratch);
                 result.partners.insert(result.partners.end(), partners.begin(), partners.end());
                 result.ends[query - begin] = result.partners.size();

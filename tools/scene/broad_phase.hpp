@@ -43,7 +43,7 @@ using EdgeEdgeSink = std::function<void(std::span<const EdgeEdge>)>;
 /// Runs in the caller's TBB arena; `sink` is called from the calling thread, one call after the
 /// other, while the search rests, and may itself use TBB. Candidates, order and pieces do not
 /// depend on the number of threads. Throws std::invalid_argument when the arrays' sizes do not
-/// agree or an index is out of range, and passes on what `sink` throws.
+/// agree or an index is out of range, and passes on what `sink` and check_interrupt() throw.
 void find_vertex_face(const Step& step, const VertexFaceSink& sink);
 
 /// The same for edge-edge: every unordered pair once, edge_a < edge_b, in order of edge_a, then
