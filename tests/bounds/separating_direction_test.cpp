@@ -2,6 +2,7 @@
 // little (feature_directions.hpp), and then what it was worth is not to be told from the answer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

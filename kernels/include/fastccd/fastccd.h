@@ -152,8 +152,8 @@ FASTCCD_API int fastccd_edge_edge_toi(const double x0[12], const double x1[12], 
 FASTCCD_API int fastccd_pairs_time_of_impact(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                              double* toi, uint8_t* roots, fastccd_summary* summary);
 /* The pairs in contact, in pair order: the first `capacity` of them into `contacts`, their number into *found (which may
- * be more). `contacts` may be NULL if capacity is 0; all of them are collected within the call then, too. Pairs with a NaN or an infinity are no contacts but counted in
- * summary->invalid; fastccd_pairs_time_of_impact() tells which they are. */
+ * be more). `contacts` may be NULL if capacity is 0; all are collected within the call then, too.
+ * Pairs with a NaN or an infinity are no contacts but counted in summary->invalid; fastccd_pairs_time_of_impact() tells which they are. */
 FASTCCD_API int fastccd_pairs_find_contacts(int kind, const double* pairs, size_t count, const fastccd_options* options,
                                             fastccd_contact* contacts, size_t capacity, size_t* found, fastccd_summary* summary);
 /* The first contact of all: smallest toi, ties to the smaller index; pair SIZE_MAX and toi INFINITY if no pair touches. Faster than
