@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -21,6 +22,7 @@
 #include <vector>
 
 #include "amount.hpp"
+#include "tools/interrupt.hpp"
 #include "tools/scene/box_tree.hpp"
 #include "tools/scene/id_sorter.hpp"
 #include "tools/scene/mesh_io.hpp"
@@ -308,6 +310,52 @@ TEST(BroadPhase, OrderAndPiecesDoNotDependOnThreads)
     for (const int threads : {2, 4}) EXPECT_TRUE(run(threads) == one) << threads << " threads";
     EXPECT_TRUE(std::is_sorted(one[0].begin(), one[0].end()));
     EXPECT_LT(one[0].back(), one[1].front());
+}
+
+// Triangles around one place, each of three vertices of its own: all boxes overlap.
+Scene dense_scene(std::size_t triangles)
+{
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> place(0, 1);
+    Scene scene;
+    for (std::size_t i = 0; i < 9 * triangles; ++i) {
+        const double x = i / 3 % 3 == 0 ? -1 - place(random) : 1 + place(random);
+        scene.positions0.push_back(x);
+        scene.positions1.push_back(i / 3 % 3 == 2 ? -x : x);
+        if (i % 3 == 0) scene.faces.push_back(static_cast<std::int32_t>(i / 3));
+    }
+    scene.edges = unique_edges(scene.faces);
+    return scene;
+}
+
+TEST(BroadPhase, PiecesOfDenseMeshesAreSmallFromTheFirst)
+{
+    const Scene scene = dense_scene(testing::amount(1500));
+    std::size_t found = 0, largest = 0;
+    find_edge_edge(scene.step(), [&](std::span<const EdgeEdge> piece) {
+        found += piece.size();
+        largest = std::max(largest, piece.size());
+    });
+    EXPECT_GT(found, scene.edges.size() * scene.edges.size() / 4);
+    EXPECT_LE(largest, std::size_t{1} << 20);
+}
+
+/// In a process of its own, which has just been told of the signal when the search begins.
+TEST(BroadPhaseDeathTest, SignalsEndThePieceInWork)
+{
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const Scene scene = dense_scene(30);
+    const auto search = [&scene] {
+        install_signal_handlers();
+        std::raise(SIGINT);
+        try {
+            find_edge_edge(scene.step(), [](auto) { std::_Exit(2); });
+        } catch (const Interrupted& interrupted) {
+            std::_Exit(interrupted.signal == SIGINT ? 0 : 3);
+        }
+        std::_Exit(1);
+    };
+    EXPECT_EXIT(search(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(BroadPhase, ExceptionOfTheSinkPassesThrough)

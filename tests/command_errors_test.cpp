@@ -395,6 +395,17 @@ TEST(CommandErrors, RefusedThreadsAreNamed)
     EXPECT_TRUE(directory.names().empty());
 }
 
+/// Room is made for as many pairs as there is text for, not for one every eight lines.
+TEST(CommandErrors, BlankLinesAreRefusedByTheirRowNotForWantOfMemory)
+{
+    if (sanitized) GTEST_SKIP() << "NOT TESTED: a sanitizer needs more memory than the limit; blank lines were not refused under one here";
+    const ScratchDirectory directory;
+    const std::string blank = directory.write("blank.csv", std::string(48'000'000, '\n') + "1,1,1,1,1,1\n");
+    const Outcome outcome = run_limited(RLIMIT_AS, 1'000'000'000, {"run", "--kind", "vf", "--quiet", blank});
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.error, "fastccd: " + blank + ": row 1 has 0 columns; expected 6, or 7 with the truth\n");
+}
+
 TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
 {
     const ScratchDirectory directory;
