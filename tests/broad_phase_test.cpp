@@ -312,7 +312,8 @@ TEST(BroadPhase, OrderAndPiecesDoNotDependOnThreads)
     EXPECT_LT(one[0].back(), one[1].front());
 }
 
-// Triangles around one place, each of three vertices of its own: all boxes overlap.
+// Triangles, each of three vertices of its own. On every axis one stays below -1, one above 1, and one goes from above 1 to below
+// -1: the box of each edge and each face holds the cube between, so all overlap.
 Scene dense_scene(std::size_t triangles)
 {
     std::mt19937 random(8);
@@ -328,6 +329,7 @@ Scene dense_scene(std::size_t triangles)
     return scene;
 }
 
+/// No more than the million candidates that a round aims at: 64 edges alone have 288,000 here.
 TEST(BroadPhase, PiecesOfDenseMeshesAreSmallFromTheFirst)
 {
     const Scene scene = dense_scene(testing::amount(1500));

@@ -395,7 +395,7 @@ TEST(CommandErrors, RefusedThreadsAreNamed)
     EXPECT_TRUE(directory.names().empty());
 }
 
-/// Room is made for as many pairs as there is text for, not for one every eight lines.
+/// Room is made for as many pairs as there is text for, 96 MB here, not for one every eight lines, 1.15 GB.
 TEST(CommandErrors, BlankLinesAreRefusedByTheirRowNotForWantOfMemory)
 {
     if (sanitized) GTEST_SKIP() << "NOT TESTED: a sanitizer needs more memory than the limit; blank lines were not refused under one here";
