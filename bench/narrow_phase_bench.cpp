@@ -1,7 +1,8 @@
 // The narrow phase from end to end, through the public interface: the table of bench_table.hpp.
 //
 // Every timed call is followed by a pass that merely reads the same memory on the same threads. Both see the same
-// state of the machine, and the ratio of their medians is the fraction of the streaming limit.
+// state of the machine, and the ratio of their medians is the fraction of the streaming limit. With several threads two more
+// passes follow that merely multiply, on all of them and on one: the cores that the threads have between them.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,6 +22,7 @@
 #include <checked_source.hpp>
 #include <fastccd/fastccd.hpp>
 
+#include "arithmetic_limit.hpp"
 #include "bench_main.hpp"
 #include "bench_table.hpp"
 #include "datasets.hpp"
@@ -163,7 +165,7 @@ void run(benchmark::State& state, const Case& c)
 {
     Input& in = input(c);
     const Call call = call_of(c, in);
-    tbb::task_arena arena(c.threads);
+    tbb::task_arena arena(c.threads), one_thread(1);
     Status status;
     Summary summary;
     const auto answer = [&] {
@@ -176,13 +178,17 @@ void run(benchmark::State& state, const Case& c)
 
     // The search for the earliest contact need not read all pairs, and indexed pairs are not what it streams.
     const bool streams = in.limit && !is_earliest(c.question);
-    std::vector<double> call_seconds, pass_seconds;
+    std::vector<double> call_seconds, pass_seconds, one_thread_products, products;
     for ([[maybe_unused]] auto _ : state) {
         const auto begin = std::chrono::steady_clock::now();
         answer();
         call_seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
         state.SetIterationTime(call_seconds.back());
         if (streams) pass_seconds.push_back(in.limit->pass(arena));
+        if (c.threads > 1) {
+            products.push_back(product_seconds(arena));  // first, while its threads are awake
+            one_thread_products.push_back(product_seconds(one_thread));
+        }
     }
 
     using benchmark::Counter;
@@ -194,6 +200,7 @@ void run(benchmark::State& state, const Case& c)
         state.counters["limit_bytes/s"] = static_cast<double>(in.bytes) / limit_seconds;
         state.counters["limit_fraction"] = limit_seconds / median(call_seconds);
     }
+    if (c.threads > 1) state.counters["cores"] = median(one_thread_products) / median(products);
     state.counters["pairs"] = static_cast<double>(in.pairs);
     if (!is_earliest(c.question)) state.counters["contacts"] = static_cast<double>(summary.contacts);
     state.counters["earliest_pair"] = static_cast<double>(summary.earliest.pair);

@@ -1,0 +1,63 @@
+#include "arithmetic_limit.hpp"
+
+#include <chrono>
+#include <cstddef>
+
+#include <benchmark/benchmark.h>
+#include <tbb/parallel_for.h>
+
+#include <fastccd/isa.hpp>
+
+namespace fastccd::bench {
+
+namespace {
+
+/// As many as keep two units with a latency of up to six cycles busy, and leave registers for the factor where there are 16.
+constexpr std::size_t chains = 12;
+constexpr int products_per_chain = 100'000;
+constexpr int parts = 32;
+
+/// x[i] = x[i] factor, over and over, each after itself and beside the others.
+template <std::size_t bytes>
+[[gnu::always_inline]] inline void multiply()
+{
+    using Vector [[gnu::vector_size(bytes)]] = double;
+    const Vector factor = Vector{} + (1.0 + 1e-9);  // stays far from overflow
+    Vector x[chains];
+#pragma GCC unroll 12
+    for (std::size_t i = 0; i < chains; ++i) x[i] = Vector{} + static_cast<double>(i + 1);
+    for (int n = 0; n < products_per_chain; ++n)
+#pragma GCC unroll 12
+        for (std::size_t i = 0; i < chains; ++i) x[i] *= factor;
+    void* elements = x;  // of which all are used, so the compiler must keep every product
+    benchmark::DoNotOptimize(elements);
+}
+
+using Multiply = void (*)();
+
+#if defined(__x86_64__)
+[[gnu::target("avx512f")]] void multiply_512() { multiply<64>(); }
+[[gnu::target("avx2")]] void multiply_256() { multiply<32>(); }
+#endif
+void multiply_128() { multiply<16>(); }
+
+Multiply widest()
+{
+#if defined(__x86_64__)
+    if (isa_available(Isa::avx512)) return multiply_512;
+    if (isa_available(Isa::avx2)) return multiply_256;
+#endif
+    return multiply_128;
+}
+
+}  // namespace
+
+double product_seconds(tbb::task_arena& arena)
+{
+    const Multiply part = widest();
+    const auto begin = std::chrono::steady_clock::now();
+    arena.execute([&] { tbb::parallel_for(0, parts, [&](int) { part(); }); });
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace fastccd::bench
