@@ -16,10 +16,11 @@ namespace {
 constexpr std::size_t chains = 12;
 constexpr int products_per_chain = 100'000;
 constexpr int parts = 32;
+static_assert(products_per_pass == static_cast<double>(chains) * products_per_chain * parts);
 
 /// x[i] = x[i] factor, over and over, each after itself and beside the others.
 template <std::size_t bytes>
-[[gnu::always_inline]] inline void multiply()
+[[gnu::always_inline]] inline void multiply_chains()
 {
     using Vector [[gnu::vector_size(bytes)]] = double;
     const Vector factor = Vector{} + (1.0 + 1e-9);  // stays far from overflow
@@ -33,15 +34,15 @@ template <std::size_t bytes>
     benchmark::DoNotOptimize(elements);
 }
 
-using Multiply = void (*)();
+using Part = void (*)();
 
 #if defined(__x86_64__)
-[[gnu::target("avx512f")]] void multiply_512() { multiply<64>(); }
-[[gnu::target("avx2")]] void multiply_256() { multiply<32>(); }
+[[gnu::target("avx512f")]] void multiply_512() { multiply_chains<64>(); }
+[[gnu::target("avx2")]] void multiply_256() { multiply_chains<32>(); }
 #endif
-void multiply_128() { multiply<16>(); }
+void multiply_128() { multiply_chains<16>(); }
 
-Multiply widest()
+Part widest()
 {
 #if defined(__x86_64__)
     if (isa_available(Isa::avx512)) return multiply_512;
@@ -52,9 +53,9 @@ Multiply widest()
 
 }  // namespace
 
-double product_seconds(tbb::task_arena& arena)
+double multiply(tbb::task_arena& arena)
 {
-    const Multiply part = widest();
+    const Part part = widest();
     const auto begin = std::chrono::steady_clock::now();
     arena.execute([&] { tbb::parallel_for(0, parts, [&](int) { part(); }); });
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

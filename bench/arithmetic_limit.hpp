@@ -5,10 +5,13 @@
 
 namespace fastccd::bench {
 
-/// Seconds that a fixed number of independent products in registers takes, the widest that this machine has, on the threads of
-/// an arena. There is no memory to wait for and nothing to overlap but the products, so a thread does all that its core
-/// can do of them. One thread's seconds over those of N threads are the cores that the N have: N on cores of their own, 1 on the
-/// hardware threads of one core. Virtual machines call both "cores", and may be moved from one to the other while they run.
-[[nodiscard]] double product_seconds(tbb::task_arena& arena);
+/// Products of registers, the widest that this machine has, in a pass of multiply().
+inline constexpr double products_per_pass = 32 * 12 * 100'000;
+
+/// Seconds of a pass of independent products in registers, on the threads of an arena. There is no memory to wait for and nothing to
+/// overlap but the products, so a thread does all that its core can do of them: half as many where another one, of this program or of
+/// a neighbour of the virtual machine, runs on the core's other hardware thread. Two such threads look like two cores in a virtual
+/// machine, which may be moved from one to the other while it runs.
+[[nodiscard]] double multiply(tbb::task_arena& arena);
 
 }  // namespace fastccd::bench

@@ -1,9 +1,8 @@
 // The narrow phase from end to end, through the public interface: the table of bench_table.hpp.
 //
 // Every timed call is followed by a pass that merely reads the same memory on the same threads. Both see the same
-// state of the machine, and the ratio of their medians is the fraction of the streaming limit. With several threads two more
-// passes follow that merely multiply, on all of them and on one, as long as they take no more time than the calls: the cores that
-// the threads have between them.
+// state of the machine, and the ratio of their medians is the fraction of the streaming limit. Another
+// pass, as long as such passes take no more time than the calls, merely multiplies: what of a core's arithmetic each thread has.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -21,6 +21,7 @@
 #include <tbb/task_arena.h>
 
 #include <checked_source.hpp>
+#include <fastccd/aligned_doubles.hpp>
 #include <fastccd/fastccd.hpp>
 
 #include "arithmetic_limit.hpp"
@@ -46,8 +47,20 @@ struct Input {
     std::optional<LayoutCopy> packed;
     std::optional<StreamingLimit> limit;
     MovingMesh mesh;
-    std::vector<double> toi;  ///< Results of all calls, in the same memory: large sets took up to twice as long in fresh one, in some runs.
+    AlignedDoubles indices;  ///< VertexFace or EdgeEdge.
+    AlignedDoubles toi;      ///< Results of all calls, in the same memory.
 };
+
+/// A list of pairs on large pages, as packed pairs are.
+template <class Pair>
+AlignedDoubles on_large_pages(const std::vector<Pair>& list)
+{
+    static_assert(sizeof(Pair) == sizeof(double));
+    AlignedDoubles memory = allocate_aligned(list.size());
+    if (memory == nullptr) throw std::bad_alloc{};
+    std::uninitialized_copy(list.begin(), list.end(), reinterpret_cast<Pair*>(memory.get()));
+    return memory;
+}
 
 MovingMesh moving_mesh(const SceneStep& scene)
 {
@@ -74,10 +87,12 @@ Input& input(const Case& c)
         return *latest;
     latest.reset();
     const Dataset& set = dataset(c.data, c.kind);
-    latest = std::make_unique<Input>(Input{c.data, c.kind, c.layout, c.scalar, set.packed.size(), 0, {}, {}, {}, {}});
-    latest->toi.resize(latest->pairs);
+    latest = std::make_unique<Input>(
+        Input{c.data, c.kind, c.layout, c.scalar, set.packed.size(), 0, {}, {}, {}, {}, allocate_aligned(set.packed.size())});
+    if (latest->toi == nullptr) throw std::bad_alloc{};
     if (c.layout == Layout::indexed) {
         latest->mesh = moving_mesh(set.scene.value());
+        latest->indices = c.kind == PairKind::vertex_face ? on_large_pages(set.vertex_face) : on_large_pages(set.edge_edge);
         latest->bytes = set.packed.size() * sizeof(VertexFace);
     } else {
         latest->packed.emplace(set.packed, packed_layout(c.layout), c.scalar);
@@ -134,12 +149,12 @@ Call call_of(const Case& c, Input& in)
     Options options;
     options.isa = c.isa;
     if (has_separation(c.question)) options.minimum_separation = bench_separation * mean_edge_length(dataset(c.data, c.kind));
+    const std::span<double> toi(in.toi.get(), in.pairs);
     if (c.layout != Layout::indexed)
-        return call_of(c.question, options, std::cref(in.kind), in.packed->view(), in.toi);
-    const Dataset& set = dataset(c.data, c.kind);
+        return call_of(c.question, options, std::cref(in.kind), in.packed->view(), toi);
     if (c.kind == PairKind::vertex_face)
-        return call_of(c.question, options, std::cref(in.mesh), std::span<const VertexFace>(set.vertex_face), in.toi);
-    return call_of(c.question, options, std::cref(in.mesh), std::span<const EdgeEdge>(set.edge_edge), in.toi);
+        return call_of(c.question, options, std::cref(in.mesh), std::span(reinterpret_cast<const VertexFace*>(in.indices.get()), in.pairs), toi);
+    return call_of(c.question, options, std::cref(in.mesh), std::span(reinterpret_cast<const EdgeEdge*>(in.indices.get()), in.pairs), toi);
 }
 
 /// A fast wrong answer is no result: the same pairs must give the same answer in every layout, instruction set and
@@ -166,7 +181,7 @@ void run(benchmark::State& state, const Case& c)
 {
     Input& in = input(c);
     const Call call = call_of(c, in);
-    tbb::task_arena arena(c.threads), one_thread(1);
+    tbb::task_arena arena(c.threads);
     Status status;
     Summary summary;
     const auto answer = [&] {
@@ -179,7 +194,7 @@ void run(benchmark::State& state, const Case& c)
 
     // The search for the earliest contact need not read all pairs, and indexed pairs are not what it streams.
     const bool streams = in.limit && !is_earliest(c.question);
-    std::vector<double> call_seconds, pass_seconds, one_thread_products, products;
+    std::vector<double> call_seconds, pass_seconds, product_seconds;
     double calls_total = 0.0, products_total = 0.0;
     for ([[maybe_unused]] auto _ : state) {
         const auto begin = std::chrono::steady_clock::now();
@@ -188,10 +203,9 @@ void run(benchmark::State& state, const Case& c)
         state.SetIterationTime(call_seconds.back());
         calls_total += call_seconds.back();
         if (streams) pass_seconds.push_back(in.limit->pass(arena));
-        if (c.threads > 1 && products_total <= calls_total) {  // calls may be of 0.1 ms, and many
-            products.push_back(product_seconds(arena));  // first, while its threads are awake
-            one_thread_products.push_back(product_seconds(one_thread));
-            products_total += products.back() + one_thread_products.back();
+        if (products_total <= calls_total) {  // calls may be of 0.1 ms, and many
+            product_seconds.push_back(multiply(arena));
+            products_total += product_seconds.back();
         }
     }
 
@@ -204,7 +218,7 @@ void run(benchmark::State& state, const Case& c)
         state.counters["limit_bytes/s"] = static_cast<double>(in.bytes) / limit_seconds;
         state.counters["limit_fraction"] = limit_seconds / median(call_seconds);
     }
-    if (c.threads > 1) state.counters["cores"] = median(one_thread_products) / median(products);
+    state.counters["products/s"] = products_per_pass / median(product_seconds);
     state.counters["pairs"] = static_cast<double>(in.pairs);
     if (!is_earliest(c.question)) state.counters["contacts"] = static_cast<double>(summary.contacts);
     state.counters["earliest_pair"] = static_cast<double>(summary.earliest.pair);

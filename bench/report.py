@@ -12,6 +12,7 @@ import json
 import math
 import pathlib
 import re
+import statistics
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -132,7 +133,19 @@ def group_by_isa(rows, pattern):
     return grouped
 
 
+def products_of_a_core(rows):
+    """Products per second of one thread that is left alone, as most are: the median. None in records without them."""
+    return statistics.median(found) if (found := [row["products/s"] for name, row in rows.items()
+                                                  if name.endswith("/threads:1") and "products/s" in row]) else None
+
+
+def cores_of(row, core):
+    """How many cores the threads of a row had, in products."""
+    return row["products/s"] / core if core and "products/s" in row else None
+
+
 def narrow_phase_table(rows, isas):
+    core = products_of_a_core(rows)
     pattern = (r"(?P<kind>vertex_face|edge_edge)/(?P<isa>\w+)/(?P<data>[^/]+)/(?P<layout>\w+)/(?P<scalar>\w+)"
                r"(?:/(?P<question>\w+))?/threads:(?P<threads>\d+)")
     out = []
@@ -140,7 +153,7 @@ def narrow_phase_table(rows, isas):
         best = found.get(isas[-1]) or list(found.values())[-1]
         out.append([kind, data, f"{layout} {scalar}", question or "dense", threads]
                    + [number(found.get(isa, {}).get("pairs/s"), 1e-6) for isa in isas]
-                   + [number(best.get("limit_bytes/s"), 1e-9), percent(best.get("limit_fraction")), number(best.get("cores")),
+                   + [number(best.get("limit_bytes/s"), 1e-9), percent(best.get("limit_fraction")), number(cores_of(best, core)),
                       number(best.get("contacts"), digits=1), percent(best.get("scalar_share")), percent(best.get("spread"))])
     header = (["kind", "data", "layout", "question", "threads"] + [f"{isa}, M pairs/s" for isa in isas]
               + ["limit, GB/s", "of limit", "cores", "contacts", "scalar path", "spread"])
@@ -202,6 +215,8 @@ def goal_table(rows):
     def ratio(a, b):
         return a / b if a and b else None
 
+    core = products_of_a_core(rows)
+
     def millions(value):
         return number(value, 1e-6)
 
@@ -220,10 +235,9 @@ def goal_table(rows):
         return rows.get(f"search/{kind}/avx512/undecided/{data}", {}).get("of_time")
 
     def two_threads_over_one():
-        """Records before there was a benchmark of products have no `cores`."""
         found = {}
         for kind in kinds:
-            cores = row(kind, "random", threads=2).get("cores")
+            cores = cores_of(row(kind, "random", threads=2), core)
             of_cores = f" ({number(cores)} cores)" if cores else ""
             found[kind.replace("_", "-") + of_cores] = ratio(rate(kind, "random", threads=2), rate(kind, "random"))
         return found
