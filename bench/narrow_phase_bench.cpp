@@ -10,7 +10,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <new>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -21,8 +20,8 @@
 #include <tbb/task_arena.h>
 
 #include <checked_source.hpp>
-#include <fastccd/aligned_doubles.hpp>
 #include <fastccd/fastccd.hpp>
+#include <large_array.hpp>
 
 #include "arithmetic_limit.hpp"
 #include "bench_main.hpp"
@@ -47,20 +46,10 @@ struct Input {
     std::optional<LayoutCopy> packed;
     std::optional<StreamingLimit> limit;
     MovingMesh mesh;
-    AlignedDoubles indices;  ///< VertexFace or EdgeEdge.
-    AlignedDoubles toi;      ///< Results of all calls, in the same memory.
+    tools::LargeArray<VertexFace> vertex_face;  ///< Of indexed pairs, one of the two lists.
+    tools::LargeArray<EdgeEdge> edge_edge;
+    tools::LargeArray<double> toi;  ///< Results of all calls, in the same memory.
 };
-
-/// A list of pairs on large pages, as packed pairs are.
-template <class Pair>
-AlignedDoubles on_large_pages(const std::vector<Pair>& list)
-{
-    static_assert(sizeof(Pair) == sizeof(double));
-    AlignedDoubles memory = allocate_aligned(list.size());
-    if (memory == nullptr) throw std::bad_alloc{};
-    std::uninitialized_copy(list.begin(), list.end(), reinterpret_cast<Pair*>(memory.get()));
-    return memory;
-}
 
 MovingMesh moving_mesh(const SceneStep& scene)
 {
@@ -87,12 +76,14 @@ Input& input(const Case& c)
         return *latest;
     latest.reset();
     const Dataset& set = dataset(c.data, c.kind);
-    latest = std::make_unique<Input>(
-        Input{c.data, c.kind, c.layout, c.scalar, set.packed.size(), 0, {}, {}, {}, {}, allocate_aligned(set.packed.size())});
-    if (latest->toi == nullptr) throw std::bad_alloc{};
+    latest = std::make_unique<Input>(Input{c.data, c.kind, c.layout, c.scalar, set.packed.size(), 0, {}, {}, {}, {}, {},
+                                           tools::LargeArray<double>{set.packed.size()}});
     if (c.layout == Layout::indexed) {
         latest->mesh = moving_mesh(set.scene.value());
-        latest->indices = c.kind == PairKind::vertex_face ? on_large_pages(set.vertex_face) : on_large_pages(set.edge_edge);
+        if (c.kind == PairKind::vertex_face)
+            latest->vertex_face = tools::LargeArray{std::span{set.vertex_face}};
+        else
+            latest->edge_edge = tools::LargeArray{std::span{set.edge_edge}};
         latest->bytes = set.packed.size() * sizeof(VertexFace);
     } else {
         latest->packed.emplace(set.packed, packed_layout(c.layout), c.scalar);
@@ -149,12 +140,12 @@ Call call_of(const Case& c, Input& in)
     Options options;
     options.isa = c.isa;
     if (has_separation(c.question)) options.minimum_separation = bench_separation * mean_edge_length(dataset(c.data, c.kind));
-    const std::span<double> toi(in.toi.get(), in.pairs);
+    const std::span<double> toi = in.toi.span();
     if (c.layout != Layout::indexed)
         return call_of(c.question, options, std::cref(in.kind), in.packed->view(), toi);
     if (c.kind == PairKind::vertex_face)
-        return call_of(c.question, options, std::cref(in.mesh), std::span(reinterpret_cast<const VertexFace*>(in.indices.get()), in.pairs), toi);
-    return call_of(c.question, options, std::cref(in.mesh), std::span(reinterpret_cast<const EdgeEdge*>(in.indices.get()), in.pairs), toi);
+        return call_of(c.question, options, std::cref(in.mesh), std::span<const VertexFace>{in.vertex_face.span()}, toi);
+    return call_of(c.question, options, std::cref(in.mesh), std::span<const EdgeEdge>{in.edge_edge.span()}, toi);
 }
 
 /// A fast wrong answer is no result: the same pairs must give the same answer in every layout, instruction set and

@@ -8,6 +8,7 @@
 #include <fastccd/isa.hpp>
 
 #include "../common_options.hpp"
+#include "../large_array.hpp"
 #include "../narrow_phase_run.hpp"
 #include "../pair_slice.hpp"
 #include "../random_pairs.hpp"
@@ -45,7 +46,7 @@ std::array<PaperRow, tolerances.size()> answer_all(const Plan& plan, PairKind ki
     for (PaperRow& row : rows) row.seconds.resize(repeats);
 
     PairBuffer buffer{std::min(chunk_pairs, plan.pairs)};
-    std::vector<double> toi(buffer.size());
+    LargeArray<double> toi{buffer.size()};
     std::vector<std::uint8_t> roots(buffer.size());
     // Piece by piece, so that all rows see the same moods of the machine, and memory does not limit the number of pairs.
     for (std::size_t first = 0; first < plan.pairs; first += buffer.size()) {
@@ -58,7 +59,7 @@ std::array<PaperRow, tolerances.size()> answer_all(const Plan& plan, PairKind ki
                 options.tolerance = tolerances[t];
                 Summary summary;
                 const auto answer = [&] {
-                    throw_unless_ok(time_of_impact(kind, pairs, options, std::span{toi}.first(size), &summary,
+                    throw_unless_ok(time_of_impact(kind, pairs, options, toi.span().first(size), &summary,
                                                    std::span{roots}.first(size)));
                 };
                 rows[t].seconds[repeat][0] += processor_seconds(answer);

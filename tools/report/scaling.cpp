@@ -6,6 +6,7 @@
 
 #include <fastccd/isa.hpp>
 
+#include "../large_array.hpp"
 #include "../narrow_phase_run.hpp"
 #include "../pair_slice.hpp"
 #include "../random_pairs.hpp"
@@ -36,12 +37,13 @@ Json over_threads(const Plan& plan, ReportProgress& progress)
     Json random = Json::array(), scene = Json::array();
     PairBuffer pairs{plan.thread_pairs()};
     fill_random_pairs(seed, 0, pairs);
-    std::vector<double> toi(pairs.size());
+    LargeArray<double> toi{pairs.size()};
 
     const ClothBall cloth{plan.cloth_size(), 2};
     const std::vector<double> start = cloth.positions(0), end = cloth.positions(1);
     const std::vector<Edge> edges = unique_edges(cloth.faces());
-    const std::vector<EdgeEdge> candidates = edge_edge_candidates({start, end, cloth.faces(), edges});
+    LargeArray<EdgeEdge> candidate_list{std::span<const EdgeEdge>{edge_edge_candidates({start, end, cloth.faces(), edges})}};
+    const std::span<const EdgeEdge> candidates = candidate_list.span();
     const MovingMesh mesh{PositionView::rows(start.data(), start.size() / 3),
                           PositionView::rows(end.data(), end.size() / 3),
                           {},
@@ -50,10 +52,10 @@ Json over_threads(const Plan& plan, ReportProgress& progress)
     for (std::size_t i = 0; i < counts.size(); ++i) {
         progress.move(i, 2 * counts.size());
         const Timing packed =
-            timed(counts[i], [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi)); });
+            timed(counts[i], [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi.span())); });
         const Timing indexed = timed(counts[i], [&] {
             contacts.clear();
-            throw_unless_ok(find_contacts(mesh, std::span{candidates}, {}, contacts));
+            throw_unless_ok(find_contacts(mesh, candidates, {}, contacts));
         });
         random.push_back({{"threads", counts[i]}, {"timing", packed.json(pairs.size())}});
         scene.push_back({{"threads", counts[i]}, {"timing", indexed.json(candidates.size())}});
@@ -67,9 +69,9 @@ Json in_memory(std::size_t count, int threads)
 {
     PairBuffer pairs{count};
     fill_random_pairs(seed, 0, pairs);
-    std::vector<double> toi(count);
+    LargeArray<double> toi{count};
     const Timing timing =
-        timed(threads, [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi)); });
+        timed(threads, [&] { throw_unless_ok(time_of_impact(PairKind::vertex_face, pairs.view(), {}, toi.span())); });
     return {{"pairs", count}, {"timing", timing.json(count)}, {"resident_bytes", resident_memory()}};
 }
 

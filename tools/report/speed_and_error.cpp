@@ -9,6 +9,7 @@
 #include <peers/peers.hpp>
 #endif
 
+#include "../large_array.hpp"
 #include "../narrow_phase_run.hpp"
 #include "../pair_slice.hpp"
 #include "../random_pairs.hpp"
@@ -97,19 +98,19 @@ Json kind_json(const Plan& plan, PairKind kind, ReportProgress& progress)
     for (const Isa isa : available()) {
         for (const double tolerance : tolerances) points.push_back({.isa = isa, .tolerance = tolerance, .comparison = {}});
     }
-    std::vector<double> toi(buffer.size());
+    LargeArray<double> toi{buffer.size()};
     const auto answer = [&](const Point& point) {
         Options options;
         options.isa = point.isa;
         options.tolerance = point.tolerance;
-        return processor_seconds([&] { throw_unless_ok(time_of_impact(kind, buffer.view(), options, toi)); });
+        return processor_seconds([&] { throw_unless_ok(time_of_impact(kind, buffer.view(), options, toi.span())); });
     };
     // Rounds over all points, so that all see the same moods of the machine. The first one warms up and gives the answers.
     for (std::size_t round = 0; round <= plan.repeats(); ++round) {
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double seconds = answer(points[i]);
             if (round == 0) {
-                points[i].comparison = compare(truth, std::span{toi}.first(plan.truth_pairs()));
+                points[i].comparison = compare(truth, toi.span().first(plan.truth_pairs()));
             } else {
                 points[i].timing.add(seconds);
             }
