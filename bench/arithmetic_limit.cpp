@@ -12,12 +12,6 @@ namespace fastccd::bench {
 
 namespace {
 
-/// As many as keep two units with a latency of up to six cycles busy, and leave registers for the factor where there are 16.
-constexpr std::size_t chains = 12;
-constexpr int products_per_chain = 100'000;
-constexpr int parts = 32;
-static_assert(products_per_pass == static_cast<double>(chains) * products_per_chain * parts);
-
 /// x[i] = x[i] factor, over and over, each after itself and beside the others.
 template <std::size_t bytes>
 [[gnu::always_inline]] inline void multiply_chains()
@@ -26,10 +20,10 @@ template <std::size_t bytes>
     const Vector factor = Vector{} + (1.0 + 1e-9);  // stays far from overflow
     Vector x[chains];
 #pragma GCC unroll 12
-    for (std::size_t i = 0; i < chains; ++i) x[i] = Vector{} + static_cast<double>(i + 1);
+    for (int i = 0; i < chains; ++i) x[i] = Vector{} + (i + 1.0);
     for (int n = 0; n < products_per_chain; ++n)
 #pragma GCC unroll 12
-        for (std::size_t i = 0; i < chains; ++i) x[i] *= factor;
+        for (int i = 0; i < chains; ++i) x[i] *= factor;
     void* elements = x;  // of which all are used, so the compiler must keep every product
     benchmark::DoNotOptimize(elements);
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <new>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -25,9 +26,10 @@ void LayoutCopy::fill(const PairBuffer& packed, PairView::Layout layout)
     streams_.count = strided ? pair_coordinates : 1;
     streams_.bytes = whole_lines((strided ? size : blocked_elements) * sizeof(T));
     const std::size_t bytes = streams_.count * streams_.bytes;
-    storage_.reset(static_cast<std::byte*>(::operator new(bytes, std::align_val_t{line})));
+    storage_ = allocate_aligned(bytes / sizeof(double));
+    if (storage_ == nullptr) throw std::bad_alloc{};
     std::memset(storage_.get(), 0, bytes);
-    streams_.data = storage_.get();
+    streams_.data = reinterpret_cast<const std::byte*>(storage_.get());
 
     T* const out = reinterpret_cast<T*>(storage_.get());
     const std::size_t column = streams_.bytes / sizeof(T);

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <memory>
-#include <new>
 
+#include <fastccd/aligned_doubles.hpp>
 #include <fastccd/pair_buffer.hpp>
 #include <fastccd/pair_view.hpp>
 
@@ -29,14 +27,10 @@ public:
     [[nodiscard]] const Streams& streams() const noexcept { return streams_; }
 
 private:
-    struct Release {
-        void operator()(std::byte* p) const noexcept { ::operator delete(p, std::align_val_t{64}); }
-    };
-
     template <class T>
     void fill(const PairBuffer& packed, PairView::Layout layout);
 
-    std::unique_ptr<std::byte, Release> storage_;
+    AlignedDoubles storage_;  ///< Of doubles or floats; null if the view is of `packed`.
     PairView view_;
     Streams streams_;
 };
