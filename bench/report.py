@@ -2,7 +2,7 @@
 """Records and tables of the benchmarks. Called by tools/bench.sh.
 
 report.py groups                     of the names on standard input, one a line: a regular expression for each group that belongs together
-report.py merge FOLDER RUN.json...   one record FOLDER/<cpu>-<isa>.json from the runs of several programs; prints its path
+report.py merge FOLDER RUN.json...   one record FOLDER/<cpu>-<isa>.json from several runs of several programs: medians; prints its path
 report.py table RECORD.json          Markdown tables of a record
 report.py readme                     writes the tables of every record in results/ to its README.md, and the goals of the latest one with
                                      AVX-512 into README.md here, between the markers
@@ -46,45 +46,58 @@ def print_groups(names):
         print("^(" + "|".join(group) + ")$")
 
 
-def refuse_other_answers(record):
+def name_of(benchmark):
+    return re.sub(r"/(manual_time|real_time)$", "", benchmark["run_name"])
+
+
+def refuse_other_answers(benchmarks):
     """A fast wrong answer is no result: the same pairs have the same contacts and the same earliest one, whatever the layout, instruction
-    set, number of threads and form of the answer."""
+    set, number of threads and form of the answer, in every round."""
     answers = {}
-    for name, row in rows_of(record).items():
+
+    def refuse_unless_equal(name, pairs, what, answer):
+        first = answers.setdefault((*pairs, what), answer)
+        if first != answer:
+            sys.exit(f"{name}: {what} is {answer!r}, of the same pairs elsewhere {first!r}")
+
+    for benchmark in benchmarks:
+        name = name_of(benchmark)
         if name.startswith("queries/"):
             _, kind, _, data = name.split("/", 3)
-            first = answers.setdefault((kind, data), row["contacts"])
-            if first != row["contacts"]:
-                sys.exit(f"{name}: contacts is {row['contacts']!r}, of the same pairs elsewhere {first!r}")
-            continue
-        if not name.startswith(("vertex_face/", "edge_edge/")):
-            continue
-        kind, _, data, _, scalar, *question = name.split("/")
-        separation = question[0].startswith("separation")  # or threads:N, where one time per pair is asked for
-        for what in ("contacts", "earliest_pair", "earliest_toi"):
-            if what not in row:  # the earliest contact alone counts no others
-                continue
-            first = answers.setdefault((kind, data, scalar, separation, what), row[what])
-            if first != row[what]:
-                sys.exit(f"{name}: {what} is {row[what]!r}, of the same pairs elsewhere {first!r}")
+            refuse_unless_equal(name, (kind, data), "contacts", benchmark["contacts"])
+        elif name.startswith(("vertex_face/", "edge_edge/")):
+            kind, _, data, _, scalar, *question = name.split("/")
+            separation = question[0].startswith("separation")  # or threads:N, where one time per pair is asked for
+            for what in ("contacts", "earliest_pair", "earliest_toi"):
+                if what in benchmark:  # the earliest contact alone counts no others
+                    refuse_unless_equal(name, (kind, data, scalar, separation), what, benchmark[what])
+
+
+def aggregates(rounds):
+    """Of one benchmark in every round, as Google Benchmark writes them: the median is the result, the coefficient of variation of the
+    time says how far to trust it."""
+    first = rounds[0]
+    common = {"run_name": first["run_name"], "run_type": "aggregate", "repetitions": len(rounds), "time_unit": first["time_unit"]}
+    same = {"name", "family_index", "per_family_instance_index", "repetition_index", "threads", *common}
+    medians = {key: statistics.median(benchmark[key] for benchmark in rounds) for key in first if key not in same}
+    times = [benchmark["real_time"] for benchmark in rounds]
+    variation = statistics.stdev(times) / statistics.mean(times) if len(times) > 1 else 0.0
+    return [{"name": first["run_name"] + "_median", **common, "aggregate_name": "median", **medians},
+            {"name": first["run_name"] + "_cv", **common, "aggregate_name": "cv", "real_time": variation}]
 
 
 def merge(folder, runs):
-    record = None
-    for run in runs:
-        run = json.loads(pathlib.Path(run).read_text())
-        # The median is the result, the coefficient of variation says how far to trust it. In the order of the program, not of turns.
-        kept = [b for b in run["benchmarks"] if b.get("aggregate_name") in ("median", "cv")]
-        kept.sort(key=lambda b: b["family_index"])
-        if record is None:
-            record = run
-            record["benchmarks"] = []
-            # Which computer and folder it was is nobody's business; the load tells how quiet the machine was.
-            for key in ("host_name", "executable"):
-                record["context"].pop(key, None)
-        record["benchmarks"] += kept
-    refuse_other_answers(record)
-    path = pathlib.Path(folder) / (slug(record["context"]) + ".json")
+    runs = [json.loads(pathlib.Path(run).read_text()) for run in runs]
+    # In the order of the programs, not of turns.
+    benchmarks = [b for run in runs for b in sorted(run["benchmarks"], key=lambda b: b["family_index"])]
+    refuse_other_answers(benchmarks)
+    rounds = {}
+    for benchmark in benchmarks:
+        rounds.setdefault(benchmark["run_name"], []).append(benchmark)
+    # Which computer and folder it was is nobody's business; the load tells how quiet the machine was.
+    context = {key: value for key, value in runs[0]["context"].items() if key not in ("host_name", "executable")}
+    record = {"context": context, "benchmarks": [row for found in rounds.values() for row in aggregates(found)]}
+    path = pathlib.Path(folder) / (slug(context) + ".json")
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(record, indent=1) + "\n")
     print(path)
@@ -94,7 +107,7 @@ def rows_of(record):
     """Medians by name, each with the coefficient of variation of its time as `spread`."""
     rows = {}
     for b in record["benchmarks"]:
-        name = re.sub(r"/(manual_time|real_time)$", "", b["run_name"])
+        name = name_of(b)
         if b["aggregate_name"] == "median":
             rows.setdefault(name, {}).update(b)
         else:

@@ -27,26 +27,34 @@ configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_BENCHMARKS=ON -- "${programs[@]
 data=${FASTCCD_DATA:-$root/../shared/data}
 [ -d "$data" ] || printf '\n!! No data folder at %s: the public scenes are left out. Set FASTCCD_DATA.\n' "$data"
 
-options=(--benchmark_repetitions=5 --benchmark_min_time=0.2)
+# So many times all of them, not each so many times in a row: medians are of as many minutes, as a shared machine has bad ones, and of as many
+# processes, as buffers keep good or bad pages for the life of one (bench/README.md).
+rounds=5
+options=(--benchmark_min_time=0.2)
 if $quick; then
-  options=(--benchmark_repetitions=3 --benchmark_min_time=0.02)
+  rounds=3
+  options=(--benchmark_min_time=0.02)
   filter=${filter:-'/(random|generated|cloth-ball)/(blocked|indexed)/double/threads:1/|^stage/.*/random$|^peer/.*/random/'}
 fi
 commit=$(git -C "$root" describe --always --dirty 2>/dev/null || echo unknown)
-options+=(--benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true "--benchmark_context=commit=$commit" --benchmark_out_format=json)
+options+=(--benchmark_enable_random_interleaving=true "--benchmark_context=commit=$commit" --benchmark_out_format=json)
 
 runs=()
-for program in "${programs[@]}"; do
+run_all() { # NAME: the benchmarks of a program
+  local program=$1 names group out
   names=$("$build/bench/$program" ${filter:+"--benchmark_filter=$filter"} --benchmark_list_tests 2>/dev/null || true)
-  [ -n "$names" ] || continue
-  say "$program (medians of repetitions)"
-  # What is compared with one another takes turns, so that a bad minute of the machine is one of all.
+  [ -n "$names" ] || return 0
+  # What is compared with one another takes turns, so that a bad second of the machine is one of all.
   while read -r group; do
     out=$build/bench/run_${#runs[@]}.json
     "$build/bench/$program" "${options[@]}" "--benchmark_filter=$group" "--benchmark_out=$out" 2>"$out.log" </dev/null |
-      grep --line-buffered -E '_median|ERROR' || { cat "$out.log" >&2; exit 1; }
+      grep --line-buffered / || { cat "$out.log" >&2; exit 1; }
     runs+=("$out")
   done < <(python3 "$root/bench/report.py" groups <<<"$names")
+}
+for ((round = 1; round <= rounds; ++round)); do
+  say "round $round of $rounds"
+  for program in "${programs[@]}"; do run_all "$program"; done
 done
 [ ${#runs[@]} -gt 0 ] || { echo "no benchmark has a name that matches $filter" >&2; exit 1; }
 
