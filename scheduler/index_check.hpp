@@ -21,6 +21,15 @@ inline bool exceeds_memory(std::size_t elements, std::size_t bytes)
     return elements > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / bytes;
 }
 
+/// The same of elements that are `stride` elements apart, in either direction: an address of one of them, or a stride in bytes, would wrap around.
+inline bool exceeds_memory(std::size_t elements, std::ptrdiff_t stride, std::size_t bytes)
+{
+    const std::size_t step = stride < 0 ? std::size_t{0} - static_cast<std::size_t>(stride) : static_cast<std::size_t>(stride);
+    const std::size_t most = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / bytes;
+    if (elements == 0) return false;
+    return elements > most || step > most || (step > 0 && elements - 1 > (most - 1) / step);
+}
+
 /// `pairs`: count pairs of indices; the first of each must be below first_size, the second below second_size.
 /// The error names the first pair at fault and its index, whatever the number of threads.
 Status check_pairs(const std::int32_t* pairs, std::size_t count, std::size_t first_size, std::size_t second_size);

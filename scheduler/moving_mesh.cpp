@@ -14,7 +14,8 @@ namespace {
 /// First row of `rows` with a vertex that is not below `vertices`, as the error given.
 Status check_rows(const IndexView& rows, int columns, std::size_t vertices, Error error)
 {
-    if ((rows.size > 0 && rows.data == nullptr) || exceeds_memory(rows.size, sizeof *rows.data)) return {Error::wrong_size};
+    if ((rows.size > 0 && rows.data == nullptr) || exceeds_memory(rows.size, rows.row_stride, sizeof *rows.data)) return {Error::wrong_size};
+    if (rows.size > 0 && exceeds_memory(static_cast<std::size_t>(columns), rows.column_stride, sizeof *rows.data)) return {Error::wrong_size};
     // As in a view whose strides were forgotten: each face would be one vertex.
     if ((rows.size > 0 && rows.column_stride == 0) || (rows.size > 1 && rows.row_stride == 0)) return {Error::wrong_size};
     for (std::size_t row = 0; row < rows.size; ++row)
@@ -49,6 +50,8 @@ MovingMesh::MovingMesh(const PositionView& start, const PositionView& end, const
 {
     if (start.size() != end.size() || (start.size() > 0 && !(start.has_data() && end.has_data()))) return;
     if (exceeds_memory(vertex_count_, 3 * sizeof(float))) return;
+    for (const PositionView* view : {&start, &end})
+        if (exceeds_memory(vertex_count_, view->stride(), view->number_size())) return;
     status_ = check_rows(faces, 3, vertex_count_, Error::bad_face_index);
     if (status_.ok()) status_ = check_rows(edges, 2, vertex_count_, Error::bad_edge_index);
     if (!status_.ok() || vertex_count_ == 0) return;

@@ -54,7 +54,7 @@ bool has_data(const PairView& pairs)
 {
     const bool strided = pairs.layout() == PairView::Layout::strided;
     const std::size_t number = pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
-    if (exceeds_memory(pairs.size(), strided ? number : pair_coordinates * number)) return false;
+    if (strided ? exceeds_memory(pairs.size(), pairs.stride(), number) : exceeds_memory(pairs.size(), pair_coordinates * number)) return false;
     const std::size_t arrays = strided ? pair_coordinates : 1;
     for (std::size_t c = 0; c < arrays; ++c)
         if (pairs.data(c) == nullptr) return false;

@@ -93,6 +93,29 @@ TEST(Api, RefusesMorePairsThanMemoryHolds)
     }
 }
 
+TEST(Api, RefusesStridesBeyondMemory)
+{
+    // The address of an element would wrap around, to somewhere in front of the array or to the first element again.
+    constexpr std::ptrdiff_t most = std::numeric_limits<std::ptrdiff_t>::max(), least = std::numeric_limits<std::ptrdiff_t>::min();
+    const double pair[24] = {};
+    const float narrow[24] = {};
+    std::array<const double*, pair_coordinates> columns{};
+    std::array<const float*, pair_coordinates> narrow_columns{};
+    columns.fill(pair);
+    narrow_columns.fill(narrow);
+    Contact earliest{};
+    const auto error = [&](const PairView& view) { return earliest_contact(PairKind::vertex_face, view, {}, earliest).error; };
+    for (const std::ptrdiff_t stride : {most, least, most / 8 + 1, least / 8}) {
+        for (const std::size_t size : {std::size_t{1}, std::size_t{2}, std::size_t{9}, std::size_t{96076792050570581}})
+            EXPECT_EQ(error(PairView::strided(columns, stride, size)), Error::wrong_size) << stride << ' ' << size;
+        EXPECT_EQ(error(PairView::strided(columns, stride, 0)), Error::none) << stride;
+    }
+    EXPECT_EQ(error(PairView::strided(columns, most / 16, 1)), Error::none);
+    EXPECT_EQ(error(PairView::strided(columns, most / 16, 4)), Error::wrong_size);
+    EXPECT_EQ(error(PairView::strided(narrow_columns, most / 4 + 1, 2)), Error::wrong_size);
+    EXPECT_EQ(error(PairView::strided(narrow_columns, most / 8, 4)), Error::wrong_size);
+}
+
 TEST(Api, RefusesAnIsaThatIsNotThere)
 {
     for (const Isa isa : {Isa::sse2, Isa::avx2, Isa::avx512, Isa::neon}) {

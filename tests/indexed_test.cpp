@@ -327,6 +327,17 @@ TEST(Indexed, MeshesThatAreNotMeshes)
         const PositionView endless = PositionView::xyz(one, one, one, 0, n);
         EXPECT_EQ((MovingMesh{endless, endless, {}, {}}).status().error, Error::out_of_memory) << n;
     }
+    // Strides by which an address would wrap around.
+    for (const std::ptrdiff_t stride : {std::numeric_limits<std::ptrdiff_t>::max(), std::numeric_limits<std::ptrdiff_t>::min(),
+                                        std::numeric_limits<std::ptrdiff_t>::max() / 16}) {
+        const PositionView wide = PositionView::xyz(one, one, one, stride, 5);
+        EXPECT_EQ((MovingMesh{wide, positions(5), {}, {}}).status().error, Error::wrong_size) << stride;
+        EXPECT_EQ((MovingMesh{positions(5), wide, {}, {}}).status().error, Error::wrong_size) << stride;
+        EXPECT_EQ((MovingMesh{positions(5), positions(5), IndexView{faces.data(), 9, stride, 1}, {}}).status().error, Error::wrong_size) << stride;
+    }
+    const IndexView wide_rows{faces.data(), 1, 3, std::numeric_limits<std::ptrdiff_t>::max()};
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), wide_rows, {}}).status().error, Error::wrong_size);
+    EXPECT_EQ((MovingMesh{positions(5), positions(5), {}, wide_rows}).status().error, Error::wrong_size);
     std::vector<double> toi;
     EXPECT_EQ(time_of_impact(MovingMesh{}, std::span<const VertexFace>{}, {}, toi).error, Error::wrong_size);
     // Spans with a size and no data.

@@ -54,6 +54,9 @@ public:
     }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    /// In elements, which are of so many bytes.
+    [[nodiscard]] std::ptrdiff_t stride() const noexcept { return stride_; }
+    [[nodiscard]] std::size_t number_size() const noexcept { return is_float_ ? sizeof(float) : sizeof(double); }
     [[nodiscard]] bool has_data() const noexcept { return axis_[0] != nullptr && axis_[1] != nullptr && axis_[2] != nullptr; }
     /// Coordinate of vertex i along axis 0, 1 or 2.
     [[nodiscard]] double operator()(std::size_t i, int axis) const noexcept
