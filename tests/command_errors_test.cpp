@@ -426,6 +426,14 @@ TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
     refused({"--save", ""}, "--save: the value is empty");
     EXPECT_TRUE(directory.names().empty());
     EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "16", "--quiet", "--hits", "/dev/null", "--save", "/dev/null"}).status, 0);
+
+    // Links to a file that is to be created.
+    std::filesystem::create_symlink("file", directory / "link");
+    std::filesystem::create_symlink(directory / "link", directory / "other_link");
+    refused({"--hits", directory / "link", "--save", file}, "written already");
+    refused({"--hits", file, "--save", directory / "link"}, "written already");
+    refused({"--hits", directory / "link", "--save", directory / "other_link"}, "written already");
+    EXPECT_EQ(directory.names().size(), 2U);
 }
 
 TEST(CommandErrors, HelpThatNobodyGetsIsAnError)

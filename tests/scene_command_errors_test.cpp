@@ -105,6 +105,33 @@ TEST(SceneCommandErrors, OutputThatCannotBeWrittenIsAnError)
     ::close(reader);
 }
 
+TEST(SceneCommandErrors, SavedPairsReplaceNeitherAFrameNorTheHits)
+{
+    const ScratchDirectory directory;
+    const std::string mesh = two_faces("1", "5");
+    const std::string named_like_pairs = directory.write("step_000_ee.npy", mesh);  // what a mesh is, is told by its content
+    const std::string b = directory.write("b.obj", two_faces("-1", "3"));
+    const Outcome onto_frame = run(scene({named_like_pairs, b}, {"--save-pairs", directory / "."}));
+    EXPECT_EQ(onto_frame.status, 2);
+    EXPECT_NE(onto_frame.error.find("--save-pairs: " + directory / "./step_000_ee.npy is an input"), std::string::npos) << onto_frame.error;
+
+    const ScratchDirectory pairs;
+    fs::create_symlink(b, pairs / "step_000_vf.npy");
+    const Outcome through_link = run(scene({named_like_pairs, b}, {"--save-pairs", pairs / ""}));
+    EXPECT_EQ(through_link.status, 2);
+    EXPECT_NE(through_link.error.find("step_000_vf.npy is an input"), std::string::npos) << through_link.error;
+    EXPECT_EQ(read_text(named_like_pairs), mesh);
+    EXPECT_EQ(directory.names().size(), 2U);
+
+    // The hits are to be created where one of the links leads to.
+    fs::remove(pairs / "step_000_vf.npy");
+    fs::create_symlink(directory / "hits.csv", pairs / "step_000_vf.npy");
+    const Outcome onto_hits = run(scene({named_like_pairs, b}, {"--save-pairs", pairs / "", "--hits", directory / "hits.csv"}));
+    EXPECT_EQ(onto_hits.status, 2);
+    EXPECT_NE(onto_hits.error.find("hits.csv is written already"), std::string::npos) << onto_hits.error;
+    EXPECT_EQ(directory.names().size(), 2U);
+}
+
 TEST(SceneCommandErrors, UsageErrorsAreOneLineAndStatusTwo)
 {
     const ScratchDirectory directory;

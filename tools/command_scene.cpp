@@ -13,6 +13,21 @@
 
 namespace fastccd::tools {
 
+namespace {
+
+void refuse_overwriting_by_pairs(const SceneOptions& options)
+{
+    const std::filesystem::path folder = options.save_pairs;
+    for (const std::string& name : SavedPairs::file_names(options.frames.size() - 1)) {
+        refuse_overwriting_input("--save-pairs", folder / name, options.frames);
+        refuse_overwriting_output(options.common, folder / name);
+    }
+    const std::string hits = std::filesystem::path{options.common.hits}.filename();
+    if (SavedPairs::is_name_of_pairs(hits)) refuse_overwriting_output(options.common, folder / hits);  // of steps that this scene has not
+}
+
+}  // namespace
+
 void add_scene_command(CLI::App& app)
 {
     CLI::App* const command = app.add_subcommand("scene", "Answer all that may touch in the frames of a moving mesh, but for pairs that share a vertex");
@@ -41,10 +56,8 @@ void add_scene_command(CLI::App& app)
         if (options->frames.size() < 2) {
             throw CLI::ValidationError("FRAME", "a step is from one frame to another; name two or more");
         }
-        refuse_overwriting_input(options->common, options->frames);
-        const std::string hits = std::filesystem::path{options->common.hits}.filename();
-        if (!options->save_pairs.empty() && SavedPairs::is_name_of_pairs(hits))
-            refuse_overwriting_output(options->common, std::filesystem::path{options->save_pairs} / hits);
+        refuse_overwriting_input("--hits", options->common.hits, options->frames);
+        if (!options->save_pairs.empty()) refuse_overwriting_by_pairs(*options);
         print_scene_report(*options, run_scene(*options));
     });
 }

@@ -170,12 +170,12 @@ void add_pair_options(CLI::App& command, PairOptions& options)
         ->excludes("--min-separation");
 }
 
-void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs)
+void refuse_overwriting_input(const std::string& option, const std::filesystem::path& output, const std::vector<std::string>& inputs)
 {
     for (const std::string& input : inputs) {
         std::error_code not_both_exist;
-        if (std::filesystem::equivalent(options.hits, input, not_both_exist)) {
-            throw CLI::ValidationError("--hits", fmt::format("{} is an input", options.hits));
+        if (std::filesystem::equivalent(output, input, not_both_exist)) {
+            throw CLI::ValidationError(option, fmt::format("{} is an input", output.string()));
         }
     }
 }
@@ -184,12 +184,8 @@ void refuse_overwriting_output(const CommonOptions& options, const std::filesyst
 {
     if (options.hits.empty() || OutputFile::is_standard_output(options.hits)) return;
     std::error_code unknown;
-    // Absolute first: of a path that is not there yet, what it is relative to is left out otherwise.
-    const auto place = [&](const std::filesystem::path& path) {
-        return std::filesystem::weakly_canonical(std::filesystem::absolute(path, unknown), unknown);
-    };
     // What is no ordinary file, such as /dev/null, takes both.
-    if (place(options.hits) != place(output) || std::filesystem::is_other(options.hits, unknown)) return;
+    if (OutputFile::place(options.hits) != OutputFile::place(output) || std::filesystem::is_other(options.hits, unknown)) return;
     throw CLI::ValidationError("--hits", fmt::format("{} is written already, by another option", options.hits));
 }
 

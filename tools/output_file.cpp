@@ -102,6 +102,13 @@ bool OutputFile::is_standard_output(const std::filesystem::path& target)
     return open_descriptor(target) == STDOUT_FILENO;
 }
 
+std::filesystem::path OutputFile::place(const std::filesystem::path& target)
+{
+    std::error_code unknown;
+    // Absolute first: of a path that is not there yet, what it is relative to is left out otherwise.
+    return std::filesystem::weakly_canonical(follow_links(std::filesystem::absolute(target, unknown)), unknown);
+}
+
 OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
 {
     if (const std::optional<int> descriptor = open_descriptor(target)) {

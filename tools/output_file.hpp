@@ -30,6 +30,9 @@ public:
     /// True if `target` names standard output.
     [[nodiscard]] static bool is_standard_output(const std::filesystem::path& target);
 
+    /// Where a file of this name comes to lie, links followed, be it there yet or not: two targets of one place are one file.
+    [[nodiscard]] static std::filesystem::path place(const std::filesystem::path& target);
+
     /// So many bytes are going to be written. Throws InputError if it is certain that there is no room for them.
     void reserve(std::uint64_t bytes) const;
 

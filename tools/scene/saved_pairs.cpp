@@ -17,12 +17,19 @@ bool SavedPairs::is_name_of_pairs(const std::string& name)
     return name.starts_with("step_") && (name.ends_with("_vf.npy") || name.ends_with("_ee.npy"));
 }
 
-SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{folder}, steps_{steps}, new_folder_{folder}
+std::vector<std::string> SavedPairs::file_names(std::size_t steps)
 {
-    std::set<std::string> own;
-    for (std::size_t step = 0; step < steps; ++step) {
-        for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge}) own.insert(file_name(step, kind));
-    }
+    // As many digits as the last step has: names sort in the order of the steps.
+    const std::size_t digits = std::max<std::size_t>(3, std::to_string(steps - 1).size());
+    std::vector<std::string> names;
+    for (std::size_t step = 0; step < steps; ++step)
+        for (const char* const kind : {"vf", "ee"}) names.push_back(fmt::format("step_{:0{}}_{}.npy", step, digits, kind));
+    return names;
+}
+
+SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{folder}, names_{file_names(steps)}, new_folder_{folder}
+{
+    const std::set<std::string> own(names_.begin(), names_.end());
     std::error_code error;
     for (fs::directory_iterator entry{folder_, error}, end; !error && entry != end; entry.increment(error)) {
         const std::string name = entry->path().filename().string();
@@ -33,17 +40,11 @@ SavedPairs::SavedPairs(const fs::path& folder, std::size_t steps) : folder_{fold
     if (error) throw InputError(folder_, fmt::format("cannot be read: {}", error.message()));
 }
 
-std::string SavedPairs::file_name(std::size_t step_number, PairKind kind) const
-{
-    // As many digits as the last step has: names sort in the order of the steps.
-    const std::size_t digits = std::max<std::size_t>(3, std::to_string(steps_ - 1).size());
-    return fmt::format("step_{:0{}}_{}.npy", step_number, digits, kind == PairKind::vertex_face ? "vf" : "ee");
-}
-
 void SavedPairs::begin(std::size_t step_number, PairKind kind)
 {
     if (!files_.empty()) files_.back().close();
-    files_.emplace_back(folder_ / file_name(step_number, kind), PairView::Layout::interleaved, std::nullopt);
+    const std::string& name = names_[2 * step_number + (kind == PairKind::vertex_face ? 0 : 1)];
+    files_.emplace_back(folder_ / name, PairView::Layout::interleaved, std::nullopt);
 }
 
 template <class Pair>

@@ -25,6 +25,9 @@ public:
     /// steps that this scene does not have: both would be taken for one scene.
     SavedPairs(const std::filesystem::path& folder, std::size_t steps);
 
+    /// Of a scene of so many steps, in the order in which they are begun.
+    [[nodiscard]] static std::vector<std::string> file_names(std::size_t steps);
+
     /// Whether a file of this name may be one of pairs, of this scene or another.
     [[nodiscard]] static bool is_name_of_pairs(const std::string& name);
 
@@ -44,10 +47,9 @@ public:
 private:
     template <class Pair>
     void append_pairs(const Step& step, std::span<const Pair> pairs);
-    [[nodiscard]] std::string file_name(std::size_t step_number, PairKind kind) const;
 
     std::filesystem::path folder_;
-    std::size_t steps_;
+    std::vector<std::string> names_;
     NewFolder new_folder_;         // outlives the temporary files in it
     std::deque<NpyWriter> files_;  // closed but for the last
     std::vector<double> records_;
