@@ -1,8 +1,10 @@
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "commands.hpp"
 #include "common_options.hpp"
@@ -17,10 +19,14 @@ namespace {
 
 void refuse_overwriting_by_pairs(const SceneOptions& options)
 {
+    std::set<std::filesystem::path> frames;  // of their places, as there may be thousands of both
+    for (const std::string& frame : options.frames) frames.insert(OutputFile::place(frame));
     const std::filesystem::path folder = options.save_pairs;
     for (const std::string& name : SavedPairs::file_names(options.frames.size() - 1)) {
-        refuse_overwriting_input("--save-pairs", folder / name, options.frames);
-        refuse_overwriting_output(options.common, folder / name);
+        const std::filesystem::path file = folder / name;
+        if (frames.contains(OutputFile::place(file)))
+            throw CLI::ValidationError("--save-pairs", fmt::format("{} is an input", file.string()));
+        refuse_overwriting_output(options.common, file);
     }
     const std::string hits = std::filesystem::path{options.common.hits}.filename();
     if (SavedPairs::is_name_of_pairs(hits)) refuse_overwriting_output(options.common, folder / hits);  // of steps that this scene has not
@@ -56,7 +62,7 @@ void add_scene_command(CLI::App& app)
         if (options->frames.size() < 2) {
             throw CLI::ValidationError("FRAME", "a step is from one frame to another; name two or more");
         }
-        refuse_overwriting_input("--hits", options->common.hits, options->frames);
+        refuse_overwriting_input(options->common, options->frames);
         if (!options->save_pairs.empty()) refuse_overwriting_by_pairs(*options);
         print_scene_report(*options, run_scene(*options));
     });

@@ -170,12 +170,12 @@ void add_pair_options(CLI::App& command, PairOptions& options)
         ->excludes("--min-separation");
 }
 
-void refuse_overwriting_input(const std::string& option, const std::filesystem::path& output, const std::vector<std::string>& inputs)
+void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs)
 {
     for (const std::string& input : inputs) {
         std::error_code not_both_exist;
-        if (std::filesystem::equivalent(output, input, not_both_exist)) {
-            throw CLI::ValidationError(option, fmt::format("{} is an input", output.string()));
+        if (std::filesystem::equivalent(options.hits, input, not_both_exist)) {
+            throw CLI::ValidationError("--hits", fmt::format("{} is an input", options.hits));
         }
     }
 }

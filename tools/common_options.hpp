@@ -53,8 +53,8 @@ void add_report_options(CLI::App& command, CommonOptions& options, const std::st
 /// All options of PairOptions.
 void add_pair_options(CLI::App& command, PairOptions& options);
 
-/// Throws CLI::ValidationError if what `option` writes would take the place of one of `inputs`.
-void refuse_overwriting_input(const std::string& option, const std::filesystem::path& output, const std::vector<std::string>& inputs);
+/// Throws CLI::ValidationError if the hits would take the place of one of `inputs`.
+void refuse_overwriting_input(const CommonOptions& options, const std::vector<std::string>& inputs);
 
 /// Throws CLI::ValidationError if the hits and `output`, another file that is written, are the same ordinary file.
 void refuse_overwriting_output(const CommonOptions& options, const std::filesystem::path& output);
