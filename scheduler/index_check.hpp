@@ -27,7 +27,7 @@ inline bool exceeds_memory(std::size_t elements, std::ptrdiff_t stride, std::siz
     const std::size_t step = stride < 0 ? std::size_t{0} - static_cast<std::size_t>(stride) : static_cast<std::size_t>(stride);
     const std::size_t most = static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / bytes;
     if (elements == 0) return false;
-    return elements > most || step > most || (step > 0 && elements - 1 > (most - 1) / step);
+    return elements > most || step > most || (step > 0 && elements - 1 > (most - 1) / step);  // (elements - 1) step + 1 > most
 }
 
 /// `pairs`: count pairs of indices; the first of each must be below first_size, the second below second_size.
