@@ -136,6 +136,56 @@ FASTCCD_INLINE Separation<L> next_look(const SeparationRecord<L>& pair, const Se
     return Lane<L>::bits(asks_features(pair, quick, parameters)) == 0 ? quick : by_features<kind>(pair, quick, parameters);
 }
 
+/// Lanes of `ahead`, looks ahead of `time`, in which the pair stays farther than d from there to the look: by the volume, or by the vectors at
+/// both ends. `at` are the positions at the look, which has shown `separation`.
+template <PairKind kind, class L>
+FASTCCD_INLINE LaneMask<L> way_proven(const SeparationRecord<L>& pair, const Positions<L>& at, const Separation<L>& separation,
+                                      const LaneMask<L>& ahead, const SearchParameters& parameters)
+{
+    if (Lane<L>::bits(ahead) == 0) return ahead;
+    const SeparationParameters& wanted = parameters.separation;
+    const SeparationBounds bounds{parameters.bounds.rho};
+    const Positions<L> before = positions(pair.r, pair.time);
+    const LaneMask<L> by_volume = ahead & farther_between<kind>(before.r, at.r, pair.extents, wanted.threshold, bounds);
+    // Where the pair was within d at the look, no vectors prove the way to it: often all that is left.
+    const LaneMask<L> others = ahead & !by_volume & less(broadcast<L>(wanted.threshold), separation.gap);
+    if (Lane<L>::bits(others) == 0) return by_volume;
+    return by_volume | (others & farther_while_turning<kind>(before.r, at.r, pair.extents, pair.n, separation.n, wanted, bounds));
+}
+
+/// The distance from above in lanes of `measured`, infinity in the others. Few batches need it; lanes that do not must not depend on the others.
+template <PairKind kind, class L>
+FASTCCD_INLINE L distance_from_above(const Positions<L>& at, const Separation<L>& separation, const LaneMask<L>& measured)
+{
+    const L infinity = broadcast<L>(__builtin_inf());
+    if (Lane<L>::bits(measured) == 0) return infinity;
+    return select<L>(measured, sqrt(square_distance<kind>(at.r, separation)), infinity);
+}
+
+/// A look ahead of what the vector at the time reached reaches.
+template <class L>
+struct LookAhead {
+    L at;                      ///< Time of the look.
+    L interval;                ///< The time to look ahead at most, from now on; 0: any.
+    LaneMask<L> is_worthwhile;  ///< It is farther than going on along the vector, or many looks have been in vain.
+};
+
+/// The one from `time`, where the distance is `gap` from below and the vector reaches `reach` farther; `turned`: a look ahead went well.
+template <class L>
+FASTCCD_INLINE LookAhead<L> look_ahead(const SeparationRecord<L>& pair, L time, L reach, L gap, L aim, const LaneMask<L>& turned)
+{
+    const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
+    const L doubled = select<L>(turned, pair.interval + pair.interval, pair.interval);
+    const LaneMask<L> stretching = less(broadcast<L>(most_plain_looks), pair.looks);
+    const L interval = select<L>(stretching & less(doubled, reach + reach), broadcast<L>(first_stretch) * reach, doubled);
+    // Where the distance falls, the line through the last two times and distances tells when it will be close.
+    const L fall = pair.last_gap - gap;
+    const LaneMask<L> falling = less(zero, fall);
+    const L until_close = (gap - aim) * ((time - pair.last_time) / fall);
+    const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
+    return {min(time + span, one), interval, stretching | (falling & less(reach, span))};
+}
+
 /// What follows from next_look(), which has shown `separation`.
 template <PairKind kind, class L>
 FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L>& separation, const SearchParameters& parameters, double limit)
@@ -143,23 +193,14 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     const SeparationParameters& wanted = parameters.separation;
     const SeparationBounds bounds{parameters.bounds.rho};
     const L zero = broadcast<L>(0.0), one = broadcast<L>(1.0);
-    const Vector3<L>& n = separation.n;
     const L gap = separation.gap;
     const Positions<L> at = positions(pair.r, pair.at);
-    const Reach<L> seen = reach<kind>(pair.r, n, threshold_along(n, pair.extents, wanted, bounds.height(kind)));
+    const Reach<L> seen = reach<kind>(pair.r, separation.n, threshold_along(separation.n, pair.extents, wanted, bounds.height(kind)));
     pair.looks = pair.looks + one;
 
     const LaneMask<L> to_prove = less_equal(broadcast<L>(proving), pair.purpose);
     const LaneMask<L> was_ahead = less_equal(broadcast<L>(looking_ahead), pair.purpose) & !to_prove;
-    LaneMask<L> turned = was_ahead;
-    if (Lane<L>::bits(was_ahead) != 0) {
-        const Positions<L> before = positions(pair.r, pair.time);
-        turned = was_ahead & farther_between<kind>(before.r, at.r, pair.extents, wanted.threshold, bounds);
-        // Where the pair was within d at the look, no vectors prove the way to it: often all that is left.
-        const LaneMask<L> others = was_ahead & !turned & less(broadcast<L>(wanted.threshold), gap);
-        if (Lane<L>::bits(others) != 0)
-            turned = turned | (others & farther_while_turning<kind>(before.r, at.r, pair.extents, pair.n, n, wanted, bounds));
-    }
+    const LaneMask<L> turned = way_proven<kind>(pair, at, separation, was_ahead, parameters);
     const LaneMask<L> too_far = was_ahead & !turned;
 
     // The look is at the time reached, but for a look too far ahead.
@@ -175,11 +216,7 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
     // At time 0 a pair that is farther than d gets a positive time, however close it is.
     const L size = sum(pair.extents);
     const L close = broadcast<L>(wanted.stop) + broadcast<L>(SeparationParameters::resolution) * size;
-    // Few batches need the distance from above; lanes that do not must not depend on the others.
-    const LaneMask<L> measured = less_equal(gap, close) | to_prove;
-    L distance = broadcast<L>(__builtin_inf());
-    if (Lane<L>::bits(measured) != 0)
-        distance = select<L>(measured, sqrt(square_distance<kind>(at.r, separation)), distance);
+    const L distance = distance_from_above<kind>(at, separation, less_equal(gap, close) | to_prove);
     // What is proven tells better how close nearly parallel edges are than the distance of points of theirs.
     const L shown = broadcast<L>(wanted.threshold) + broadcast<L>(SeparationBounds::close_gap()) * size;
     const LaneMask<L> near = certified & less(zero, time) & (less_equal(distance, close) | less_equal(gap, shown));
@@ -187,18 +224,9 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
                                   less(pair.looks, broadcast<L>(most_looks));
     const LaneMask<L> found = here & !(advancing | at_start);
 
-    const L reach = high - time;
-    const L doubled = select<L>(turned, pair.interval + pair.interval, pair.interval);
-    const LaneMask<L> stretching = less(broadcast<L>(most_plain_looks), pair.looks);
-    const L interval = select<L>(stretching & less(doubled, reach + reach), broadcast<L>(first_stretch) * reach, doubled);
-    // Where the distance falls, the line through the last two times and distances tells when it will be close.
-    const L aim = aimed_distance(wanted, pair.extents);
-    const L fall = pair.last_gap - gap;
-    const LaneMask<L> falling = less(zero, fall);
-    const L until_close = (gap - aim) * ((time - pair.last_time) / fall);
-    const L span = min(select<L>(falling, until_close, one), select<L>(less(zero, interval), interval, one));
-    const L ahead = min(time + span, one);
-    const LaneMask<L> look_ahead = advancing & (stretching | (falling & less(reach, span))) & less(next, ahead);
+    const L aim = aimed_distance(wanted, pair.extents), reach = high - time;
+    const LookAhead<L> ahead = look_ahead(pair, time, reach, gap, aim, turned);
+    const LaneMask<L> looks_ahead = advancing & ahead.is_worthwhile & less(next, ahead.at);
     // A look too far, at which the pair was too close already, leaves the time between to look at, once; not after a guess, since with a
     // last distance of 0 at_aim is beyond `at`.
     const L at_aim = time + (pair.last_gap - aim) * ((pair.at - time) / (pair.last_gap - gap));
@@ -206,15 +234,15 @@ FASTCCD_INLINE StepOutcome<L> step(SeparationRecord<L>& pair, const Separation<L
                                  less(at_aim, pair.at) & less(pair.looks, broadcast<L>(most_looks));
     const L later = min(time + select<L>(near, broadcast<L>(proof_stretch) * reach, broadcast<L>(parameters.leaf_width)), one);
 
-    pair.n = select(here, n, pair.n);
+    pair.n = select(here, separation.n, pair.n);
     pair.high = high;
-    pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), interval);
+    pair.interval = select<L>(too_far, broadcast<L>(0.5) * (pair.at - pair.time), ahead.interval);
     pair.last_time = select<L>(here, time, pair.last_time);
     pair.last_gap = select<L>(here, gap, pair.last_gap);
-    pair.time = select<L>((too_far & !less_far) | (advancing & !look_ahead), next, time);
-    pair.at = select<L>(found, later, select<L>(look_ahead, ahead, select<L>(less_far, at_aim, pair.time)));
+    pair.time = select<L>((too_far & !less_far) | (advancing & !looks_ahead), next, time);
+    pair.at = select<L>(found, later, select<L>(looks_ahead, ahead.at, select<L>(less_far, at_aim, pair.time)));
     pair.purpose = select<L>(found, broadcast<L>(proving),
-                             select<L>(look_ahead, broadcast<L>(looking_ahead),
+                             select<L>(looks_ahead, broadcast<L>(looking_ahead),
                                        select<L>(less_far, broadcast<L>(looking_less_far), broadcast<L>(going_on))));
 
     const LaneMask<L> certain =

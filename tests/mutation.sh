@@ -313,7 +313,7 @@ walk=kernels/separation_steps.hpp
 mutant 'separation: start not looked at' $walk 's/here & certified_at\(seen, pair\.at\)/here/' separation_test separation_bits_test
 mutant 'separation: first half taken for the whole' $walk 's/select<L>\(farther\.first, half, zero\)/select<L>(farther.first, one, zero)/' separation_test
 mutant 'separation: second half taken for the first' $walk 's/select<L>\(apart_from_half, half, seen\.low\)/select<L>(apart_from_half, zero, seen.low)/' separation_test
-mutant 'separation: too far taken for farther' $walk 's/turned = was_ahead & farther_between/turned = was_ahead | farther_between/' separation_test separation_bits_test
+mutant 'separation: too far taken for farther' $walk 's/by_volume = ahead & farther_between/by_volume = ahead | farther_between/' separation_test separation_bits_test
 farther=kernels/farther_certificates.hpp
 mutant 'farther: volume on the whole without d' $farther 's/3\.0 \* areas \* bounds\.distance/0.0 * areas * bounds.distance/' error_bounds_test separation_bits_test
 mutant 'farther: volume on halves without d' $farther 's/12\.0 \* bounds\.distance/0.0 * bounds.distance/' error_bounds_test separation_test
