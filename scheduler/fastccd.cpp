@@ -202,6 +202,7 @@ const char* message(Error error) noexcept
         case Error::bad_distance_tolerance: return "the distance tolerance must be a finite number, at least 0";
         case Error::bad_face_index: return "a face of the mesh refers to a vertex that is not there";
         case Error::bad_edge_index: return "an edge of the mesh refers to a vertex that is not there";
+        case Error::bad_kind: return "pairs are vertex-face or edge-edge; this kind is neither";
         case Error::exact_separation: return "there is no exact verdict with a minimum separation";
     }
     return "unknown error";

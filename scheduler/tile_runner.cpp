@@ -83,6 +83,7 @@ Status choose_kernels(Isa wanted, const KernelTable*& kernels)
 
 Status prepare(PairKind kind, const PairSource& source, const Options& options, bool count_roots, Job& job)
 {
+    if (kind != PairKind::vertex_face && kind != PairKind::edge_edge) return {Error::bad_kind};
     if (!(options.tolerance > 0.0) || std::isinf(options.tolerance)) return {Error::bad_tolerance};
     if (!(options.t_max > 0.0 && options.t_max <= 1.0)) return {Error::bad_t_max};
     if (source.view != nullptr && source.size > 0 && !has_data(*source.view)) return {Error::wrong_size};

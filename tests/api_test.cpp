@@ -47,6 +47,25 @@ TEST(Api, RefusesBadOptions)
     EXPECT_EQ(error_of({}), Error::none);
 }
 
+TEST(Api, RefusesKindsThatAreNone)
+{
+    const auto pairs = uniform_pairs(3);
+    constexpr double untouched = -1.0;
+    std::vector<double> toi(3, untouched);
+    std::vector<Contact> contacts;
+    Contact earliest;
+    for (const int number : {2, 7, 255}) {
+        const auto kind = static_cast<PairKind>(number);
+        EXPECT_EQ(time_of_impact(kind, interleaved(pairs), {}, toi).error, Error::bad_kind) << number;
+        EXPECT_EQ(find_contacts(kind, interleaved(pairs), {}, contacts).error, Error::bad_kind) << number;
+        EXPECT_EQ(earliest_contact(kind, interleaved(pairs), {}, earliest).error, Error::bad_kind) << number;
+    }
+    EXPECT_EQ(toi, std::vector<double>(3, untouched));
+    EXPECT_TRUE(contacts.empty());
+    EXPECT_STRNE(message(Error::bad_kind), message(Error::bad_tolerance));
+    EXPECT_STRNE(message(Error::bad_kind), "unknown error");
+}
+
 TEST(Api, RefusesWrongSizes)
 {
     const auto pairs = uniform_pairs(5);

@@ -154,6 +154,8 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random"}, "--kind is required"},
         {{"random", "--kind", "ve"}, "--kind: 've' is neither vf"},
         {{"random", "--kind", "vf", "--pairs", "-1"}, "--pairs"},
+        {{"random", "--kind", "vf", "--pairs"}, "--pairs: the value is missing; see"},
+        {{"random", "--kind", "vf", "--save"}, "--save: the value is missing; see"},
         {{"random", "--kind", "vf", "--pairs", "1e6"}, "--pairs: '1e6' is not a whole number"},
         {{"random", "--kind", "vf", "--pairs", "99999999999999999999"}, "--pairs: '99999999999999999999' is not"},
         {{"random", "--kind", "vf", "--seed", "x"}, "--seed: 'x' is not"},

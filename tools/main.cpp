@@ -81,12 +81,19 @@ std::string unexpected(const CLI::App& app)
     return fmt::format("not expected: {}", fmt::join(words, " "));
 }
 
+/// CLI11's words for an option without its value are "--pairs: 1 required N missing".
+std::string without_value(const std::string& text)
+{
+    const std::size_t colon = text.find(": 1 required ");
+    return colon == std::string::npos || !text.ends_with(" missing") ? text : text.substr(0, colon) + ": the value is missing";
+}
+
 /// One line: what is wrong, and where help is.
 std::string usage_error(const CLI::App* app, const CLI::Error& error)
 {
     std::string command = "fastccd";
     for (const CLI::App* const given : app->get_subcommands()) command += " " + given->get_name();
-    const std::string what = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ? unexpected(*app) : error.what();
+    const std::string what = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ? unexpected(*app) : without_value(error.what());
     return fmt::format("fastccd: {}; see `{} --help`\n", on_one_line(what), command);
 }
 

@@ -118,6 +118,7 @@ enum class Error : std::uint8_t {
     exact_separation,        ///< options.exact together with a minimum separation.
     bad_face_index,          ///< face `pair` of a mesh refers to a vertex that is not there.
     bad_edge_index,          ///< edge `pair` of a mesh refers to a vertex that is not there.
+    bad_kind,                ///< a PairKind that is neither of the two.
 };
 
 /// Outcome of a call: `error` and, where one pair, face or edge is at fault, its number and the index it holds.
