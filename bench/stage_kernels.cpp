@@ -77,12 +77,12 @@ unsigned certificates(const bench::StageInput& input)
     const ScreeningBounds bounds = Lane<S>::is_single ? all.screening_in_single() : all.screening();
     unsigned kept = 0;
     for (std::size_t i = 0; i < input.pairs; i += Lane<S>::width) {
-        const double* parts[Lane<S>::width / width];
-        for (std::size_t j = i; const double*& part : parts) {
-            part = input.blocks + j / block_pairs * block_coordinates + j % block_pairs;
+        InRows<L> parts[Lane<S>::width / width];
+        for (std::size_t j = i; InRows<L>& part : parts) {
+            part = {input.blocks + j / block_pairs * block_coordinates + j % block_pairs, block_pairs};
             j += width;
         }
-        const RelativeMotion<S> r = relative_motion_in<S, L>(parts, block_pairs, input.parameters->t_max);
+        const RelativeMotion<S> r = relative_motion_in<S, L>(parts, input.parameters->t_max);
         Extents<S> extents;
         LaneMask<S> apart = linear_certificate<kind>(r, bounds.whole, extents);
         const Scales<S> scale = scales(extents);

@@ -34,7 +34,7 @@ struct LaneQueue {
 /// Fields: see PairRecord in simd/records.hpp.
 using PairQueue = LaneQueue<19>;
 using RootQueue = LaneQueue<21>;
-/// Pairs that screening leaves: where the first of their coordinates lies, the others in steps of block_pairs, and their numbers.
+/// Pairs that screening leaves: where the first of their coordinates lies, by its layout the others (simd/packed_pairs.hpp), and their numbers.
 struct ScreenedQueue {
     static constexpr unsigned capacity = LaneQueue<1>::capacity;
 
@@ -85,6 +85,9 @@ static_assert(group_pairs + most_lanes + 8 <= ScreenedQueue::capacity && tile_pa
 
 /// Blocks of indexed pairs whose vertices are asked for before they are read.
 inline constexpr std::size_t indexed_ahead = 2;
+/// Blocks of which the vertex records are known at a time: those of a group and the ones ahead.
+inline constexpr std::size_t record_blocks = 16;
+static_assert(record_blocks >= group_pairs / block_pairs + indexed_ahead);
 /// Pairs whose boxes are asked for before they are read.
 inline constexpr std::size_t boxes_ahead = 32;
 
@@ -118,15 +121,15 @@ struct TileScratch {
     AdvancingQueue advancing;  ///< With a minimum separation: candidates that the first look does not settle.
     ContactGuesses guesses;
     Looks looks;
-    /// The blocks of a group in the native layout, where the input is not ...
+    /// The pairs of a group in the native layout or interleaved, where the input is neither ...
     alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
     /// ... and a block of the pairs that wait in `screened` while the next group takes their place.
     alignas(64) double waiting[block_coordinates];
-    alignas(64) double wide[block_coordinates];  ///< Records of floats, as doubles.
     /// Indexed pairs that their boxes do not keep apart, by their number in the tile; the last one again for the blocks after.
     std::uint16_t listed[tile_pairs + (indexed_ahead + 1) * block_pairs];
     alignas(64) double numbers[group_pairs];                   ///< Those of the blocks of a group, as lanes know them.
-    const double* records[indexed_ahead + 1][4][block_pairs];  ///< Vertex records of indexed pairs, a ring of blocks.
+    const double* records[record_blocks][4][block_pairs];      ///< Vertex records of indexed pairs, a ring of blocks,
+    const double* collected_records[4][block_pairs];           ///< and those of a batch of pairs from anywhere.
 };
 
 enum class CacheLevel : std::uint8_t { first, second };

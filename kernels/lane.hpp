@@ -96,16 +96,10 @@ struct Lane<double> {
         if (bits != 0) *p = x;
     }
 
-    /// Vertex records x y z x' y' z' . . that transpose_records takes at a time.
-    static constexpr unsigned transposed_records = 1;
-    /// Rows x, y, z of the records to start, start + stride, start + 2 stride; rows x', y', z' to end.
-    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
-    {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            start[axis * stride] = records[0][axis];
-            end[axis * stride] = records[0][3 + axis];
-        }
-    }
+    /// Columns of records that transpose() takes at a time.
+    static constexpr int transposed_columns = 1;
+    /// Lane i of columns[k] becomes records[i][first + k].
+    static FASTCCD_INLINE void transpose(const double* const* records, int first, double* columns) { columns[0] = records[0][first]; }
 
     /// What the box of the pair's first primitive compares with: highest x y z, 0, minus the lowest x y z, 0, all moved
     /// outwards by `separation`, at both ends.

@@ -32,18 +32,42 @@ FASTCCD_INLINE Vector3<L> position(const RelativeMotion<L>& r, int i, L s)
     return {lerp(r.start[i].x, r.end[i].x, s), lerp(r.start[i].y, r.end[i].y, s), lerp(r.start[i].z, r.end[i].z, s)};
 }
 
-/// From 24 coordinates in the order of PairView, at(c) the lanes of number c.
+/// The components of one batch's motion, from 24 coordinates in the order of PairView: at(c) are the lanes of number c. Each is asked for once,
+/// in order, since some are transposed for it.
+template <class L, class At>
+class RelativeCoordinates {
+public:
+    FASTCCD_INLINE explicit RelativeCoordinates(const At& at) : at_{at} {}
+    /// Of r_i, to be asked for in the order in which a RelativeMotion holds them.
+    FASTCCD_INLINE L operator()(int end, int i, int axis)
+    {
+        if (i == 1 && axis == 0)
+            for (int k = 0; k < 3; ++k) x0_[k] = at_(12 * end + k);
+        return Lane<L>::difference(at_(12 * end + 3 * i + axis), x0_[axis]);
+    }
+
+private:
+    At at_;
+    L x0_[3];
+};
+
+/// component(end, i, axis), asked for in the order in which a RelativeMotion holds them.
+template <class Component>
+FASTCCD_INLINE auto motion_of(Component component)
+{
+    using L = decltype(component(0, 1, 0));
+    const auto point = [&](int end, int i) FASTCCD_INLINE_LAMBDA {
+        return Vector3<L>{component(end, i, 0), component(end, i, 1), component(end, i, 2)};
+    };
+    return RelativeMotion<L>{{point(0, 1), point(0, 2), point(0, 3)}, {point(1, 1), point(1, 2), point(1, 3)}};
+}
+
 /// t_max != 1 moves the end of the motion to t_max; error_bound.hpp accounts for that rounding.
 template <class L, class At>
 FASTCCD_INLINE RelativeMotion<L> relative_motion_of(const At& at, double t_max)
 {
-    const auto relative = [&](int end, int i) FASTCCD_INLINE_LAMBDA {
-        const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
-            return Lane<L>::difference(at(12 * end + 3 * i + axis), at(12 * end + axis));
-        };
-        return Vector3<L>{along(0), along(1), along(2)};
-    };
-    RelativeMotion<L> r{{relative(0, 1), relative(0, 2), relative(0, 3)}, {relative(1, 1), relative(1, 2), relative(1, 3)}};
+    RelativeCoordinates<L, At> read{at};
+    RelativeMotion<L> r = motion_of([&](int end, int i, int axis) FASTCCD_INLINE_LAMBDA { return read(end, i, axis); });
     if (t_max != 1.0) {
         const L end = broadcast<L>(t_max);
         r = {{r.start[0], r.start[1], r.start[2]}, {position(r, 0, end), position(r, 1, end), position(r, 2, end)}};
@@ -51,48 +75,51 @@ FASTCCD_INLINE RelativeMotion<L> relative_motion_of(const At& at, double t_max)
     return r;
 }
 
+/// Coordinates in rows: lane i of number c is rows[c * stride + i].
+template <class L>
+struct InRows {
+    const double* rows;
+    int stride;
+
+    FASTCCD_INLINE L operator()(int c) const { return Lane<L>::load(rows + c * stride); }
+};
+
 /// From coordinates[c * stride + lane].
 template <class L>
 FASTCCD_INLINE RelativeMotion<L> relative_motion(const double* coordinates, int stride, double t_max)
 {
-    return relative_motion_of<L>([=](int c) FASTCCD_INLINE_LAMBDA { return Lane<L>::load(coordinates + c * stride); }, t_max);
+    return relative_motion_of<L>(InRows<L>{coordinates, stride}, t_max);
 }
 
-/// The motions of two batches, of coordinates parts[k][c * stride + lane], combined component by component by combine(first, second),
-/// called in the order in which a RelativeMotion holds them. Not batch by batch: all components of one would not fit into registers.
-template <class L, class Combine>
-FASTCCD_INLINE auto combined_motion(const double* const (&parts)[2], int stride, double t_max, Combine combine)
+/// The motions of two batches, at[k](c) of batch k, combined component by component by combine(first, second), called in the order in which a
+/// RelativeMotion holds them. Not batch by batch: all components of one would not fit into registers.
+template <class L, class At, class Combine>
+FASTCCD_INLINE auto combined_motion(const At (&at)[2], double t_max, Combine combine)
 {
-    using Combined = decltype(combine(L{}, L{}));
-    const auto motion = [&](auto component) FASTCCD_INLINE_LAMBDA -> RelativeMotion<Combined> {
-        const auto point = [&](int end, int i) FASTCCD_INLINE_LAMBDA -> Vector3<Combined> {
-            const auto along = [&](int axis) FASTCCD_INLINE_LAMBDA {
-                return combine(component(parts[0], end, i, axis), component(parts[1], end, i, axis));
-            };
-            return {along(0), along(1), along(2)};
-        };
-        return {{point(0, 1), point(0, 2), point(0, 3)}, {point(1, 1), point(1, 2), point(1, 3)}};
+    RelativeCoordinates<L, At> first{at[0]}, second{at[1]};
+    if (t_max == 1.0)
+        return motion_of([&](int end, int i, int axis) FASTCCD_INLINE_LAMBDA { return combine(first(end, i, axis), second(end, i, axis)); });
+    L starts[2][9];
+    const auto moved = [&](RelativeCoordinates<L, At>& read, L(&start)[9], int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
+        const L there = read(end, i, axis);
+        L& from = start[3 * (i - 1) + axis];
+        if (end == 0) from = there;
+        return end == 0 ? there : lerp(from, there, broadcast<L>(t_max));
     };
-    const auto difference = [&](const double* part, int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
-        const double* const at = part + (12 * end + axis) * stride;
-        return Lane<L>::difference(Lane<L>::load(at + 3 * i * stride), Lane<L>::load(at));
-    };
-    if (t_max == 1.0) return motion(difference);
-    return motion([&](const double* part, int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
-        const L start = difference(part, 0, i, axis);
-        return end == 0 ? start : lerp(start, difference(part, 1, i, axis), broadcast<L>(t_max));
+    return motion_of([&](int end, int i, int axis) FASTCCD_INLINE_LAMBDA {
+        return combine(moved(first, starts[0], end, i, axis), moved(second, starts[1], end, i, axis));
     });
 }
 
-/// The same in the lane type S that pairs are screened in: L, or one of single precision, whose lanes hold two batches of L. Lanes of part k
-/// are of parts[k][c * stride + lane]. Differences are rounded to S at the end: by at most u X once more, with its u.
-template <class S, class L, std::size_t part_count>
-FASTCCD_INLINE RelativeMotion<S> relative_motion_in(const double* const (&parts)[part_count], int stride, double t_max)
+/// The same in the lane type S that pairs are screened in: L, or one of single precision, whose lanes hold two batches of L. Differences are
+/// rounded to S at the end: by at most u X once more, with its u.
+template <class S, class L, class At, std::size_t part_count>
+FASTCCD_INLINE RelativeMotion<S> relative_motion_in(const At (&at)[part_count], double t_max)
 {
     if constexpr (!Lane<S>::is_single)
-        return relative_motion<L>(parts[0], stride, t_max);
+        return relative_motion_of<L>(at[0], t_max);
     else
-        return combined_motion<L>(parts, stride, t_max, [](L low, L high) FASTCCD_INLINE_LAMBDA { return Lane<L>::narrowed(low, high); });
+        return combined_motion<L>(at, t_max, [](L low, L high) FASTCCD_INLINE_LAMBDA { return Lane<L>::narrowed(low, high); });
 }
 
 /// Largest |component| per axis over r1, r2, r3 and both ends: the scale of every rounding error.

@@ -12,23 +12,6 @@ alignas(32) inline constexpr int compress_permutation[16][8] = {
     {6, 7, 0, 1, 2, 3, 4, 5}, {0, 1, 6, 7, 2, 3, 4, 5}, {2, 3, 6, 7, 0, 1, 4, 5}, {0, 1, 2, 3, 6, 7, 4, 5},
     {4, 5, 6, 7, 0, 1, 2, 3}, {0, 1, 4, 5, 6, 7, 2, 3}, {2, 3, 4, 5, 6, 7, 0, 1}, {0, 1, 2, 3, 4, 5, 6, 7}};
 
-FASTCCD_INLINE void transpose_four_records(const double* const* records, double* start, double* end, std::size_t stride)
-{
-    const __m256d a = _mm256_loadu_pd(records[0]), b = _mm256_loadu_pd(records[1]);
-    const __m256d c = _mm256_loadu_pd(records[2]), d = _mm256_loadu_pd(records[3]);
-    const __m256d ab_xz = _mm256_unpacklo_pd(a, b), ab_yx = _mm256_unpackhi_pd(a, b);
-    const __m256d cd_xz = _mm256_unpacklo_pd(c, d), cd_yx = _mm256_unpackhi_pd(c, d);
-    _mm256_storeu_pd(start, _mm256_permute2f128_pd(ab_xz, cd_xz, 0x20));
-    _mm256_storeu_pd(start + stride, _mm256_permute2f128_pd(ab_yx, cd_yx, 0x20));
-    _mm256_storeu_pd(start + 2 * stride, _mm256_permute2f128_pd(ab_xz, cd_xz, 0x31));
-    _mm256_storeu_pd(end, _mm256_permute2f128_pd(ab_yx, cd_yx, 0x31));
-    // y' z' of the first and third record, and of the second and fourth.
-    const __m256d ac = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[0] + 4)), _mm_loadu_pd(records[2] + 4), 1);
-    const __m256d bd = _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(records[1] + 4)), _mm_loadu_pd(records[3] + 4), 1);
-    _mm256_storeu_pd(end + stride, _mm256_unpacklo_pd(ac, bd));
-    _mm256_storeu_pd(end + 2 * stride, _mm256_unpackhi_pd(ac, bd));
-}
-
 /// Boxes of the grid in registers of 256 bits, for AVX2 and AVX-512.
 struct WideBoxes {
     using FirstBox = __m256i;
@@ -100,10 +83,18 @@ struct BatchTraits<xsimd::avx2> : WideBoxes {
     static FASTCCD_INLINE __m256d min(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
     static FASTCCD_INLINE __m256d max(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
     static FASTCCD_INLINE __m256d difference(__m256d a, __m256d b) { return _mm256_sub_pd(a, b); }
-    static constexpr unsigned transposed_records = 4;
-    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    static constexpr int transposed_columns = 4;
+    template <class Batch>
+    static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns)
     {
-        transpose_four_records(records, start, end, stride);
+        const __m256d a = _mm256_loadu_pd(records[0] + first), b = _mm256_loadu_pd(records[1] + first);
+        const __m256d c = _mm256_loadu_pd(records[2] + first), d = _mm256_loadu_pd(records[3] + first);
+        const __m256d ab_even = _mm256_unpacklo_pd(a, b), ab_odd = _mm256_unpackhi_pd(a, b);
+        const __m256d cd_even = _mm256_unpacklo_pd(c, d), cd_odd = _mm256_unpackhi_pd(c, d);
+        columns[0] = _mm256_permute2f128_pd(ab_even, cd_even, 0x20);
+        columns[1] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20);
+        columns[2] = _mm256_permute2f128_pd(ab_even, cd_even, 0x31);
+        columns[3] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31);
     }
 };
 

@@ -5,38 +5,10 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-/// x y z x' of a and of b.
+/// Four doubles of a, then four of b.
 FASTCCD_INLINE __m512d two_halves(const double* a, const double* b)
 {
     return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(a)), _mm256_loadu_pd(b), 1);
-}
-
-/// y' z' of a, b, c, d.
-FASTCCD_INLINE __m512d four_quarters(const double* a, const double* b, const double* c, const double* d)
-{
-    __m512d quarters = _mm512_maskz_broadcast_f64x2(0x03, _mm_loadu_pd(a + 4));
-    quarters = _mm512_mask_broadcast_f64x2(quarters, 0x0c, _mm_loadu_pd(b + 4));
-    quarters = _mm512_mask_broadcast_f64x2(quarters, 0x30, _mm_loadu_pd(c + 4));
-    return _mm512_mask_broadcast_f64x2(quarters, 0xc0, _mm_loadu_pd(d + 4));
-}
-
-/// Parts of records are put side by side by loads, which do not need the ports that shuffle: ten shuffles instead of the 22 of
-/// whole registers, and 16 loads instead of 24 that broadcast two numbers each.
-FASTCCD_INLINE void transpose_eight_records(const double* const* records, double* start, double* end, std::size_t stride)
-{
-    // Copies: the compiler must take it that the stores below might change the originals.
-    const double *const r0 = records[0], *const r1 = records[1], *const r2 = records[2], *const r3 = records[3];
-    const double *const r4 = records[4], *const r5 = records[5], *const r6 = records[6], *const r7 = records[7];
-    const __m512d r02 = two_halves(r0, r2), r13 = two_halves(r1, r3), r46 = two_halves(r4, r6), r57 = two_halves(r5, r7);
-    const __m512d xz_first = _mm512_unpacklo_pd(r02, r13), xz_last = _mm512_unpacklo_pd(r46, r57);
-    const __m512d yx_first = _mm512_unpackhi_pd(r02, r13), yx_last = _mm512_unpackhi_pd(r46, r57);
-    const __m512d even = four_quarters(r0, r2, r4, r6), odd = four_quarters(r1, r3, r5, r7);
-    _mm512_storeu_pd(start, _mm512_shuffle_f64x2(xz_first, xz_last, 0x88));
-    _mm512_storeu_pd(start + stride, _mm512_shuffle_f64x2(yx_first, yx_last, 0x88));
-    _mm512_storeu_pd(start + 2 * stride, _mm512_shuffle_f64x2(xz_first, xz_last, 0xdd));
-    _mm512_storeu_pd(end, _mm512_shuffle_f64x2(yx_first, yx_last, 0xdd));
-    _mm512_storeu_pd(end + stride, _mm512_unpacklo_pd(even, odd));
-    _mm512_storeu_pd(end + 2 * stride, _mm512_unpackhi_pd(even, odd));
 }
 
 template <>
@@ -111,10 +83,20 @@ struct BatchTraits<xsimd::avx512bw> : WideBoxes {
     /// comparisons are more than half of a screening, and AMD's family 26 does all of them on two of its four units, products on the
     /// other two. Intel's do either on any; where minima are done beside products, this gains nothing and may cost.
     static FASTCCD_INLINE __m512d difference(__m512d a, __m512d b) { return _mm512_fmsub_pd(a, _mm512_set1_pd(1.0), b); }
-    static constexpr unsigned transposed_records = 8;
-    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    static constexpr int transposed_columns = 4;
+    /// Records k and k + 4 are put side by side by loads, which leaves eight shuffles.
+    template <class Batch>
+    static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns)
     {
-        transpose_eight_records(records, start, end, stride);
+        const auto two = [&](int k) FASTCCD_INLINE_LAMBDA { return two_halves(records[k] + first, records[k + 4] + first); };
+        const __m512d r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
+        const __m512d even01 = _mm512_unpacklo_pd(r0, r1), odd01 = _mm512_unpackhi_pd(r0, r1);
+        const __m512d even23 = _mm512_unpacklo_pd(r2, r3), odd23 = _mm512_unpackhi_pd(r2, r3);
+        const __m512i front = _mm512_set_epi64(13, 12, 5, 4, 9, 8, 1, 0), back = _mm512_set_epi64(15, 14, 7, 6, 11, 10, 3, 2);
+        columns[0] = _mm512_permutex2var_pd(even01, front, even23);
+        columns[1] = _mm512_permutex2var_pd(odd01, front, odd23);
+        columns[2] = _mm512_permutex2var_pd(even01, back, even23);
+        columns[3] = _mm512_permutex2var_pd(odd01, back, odd23);
     }
 };
 

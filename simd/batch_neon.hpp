@@ -35,17 +35,13 @@ struct BatchTraits<xsimd::neon64> {
     static FASTCCD_INLINE float64x2_t widened_low(float32x4_t x) { return vcvt_f64_f32(vget_low_f32(x)); }
     static FASTCCD_INLINE float64x2_t widened_high(float32x4_t x) { return vcvt_high_f64_f32(x); }
     static FASTCCD_INLINE float64x2_t difference(float64x2_t a, float64x2_t b) { return vsubq_f64(a, b); }
-    static constexpr unsigned transposed_records = 2;
-    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    static constexpr int transposed_columns = 2;
+    template <class Batch>
+    static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns)
     {
-        const float64x2_t a0 = vld1q_f64(records[0]), a1 = vld1q_f64(records[0] + 2), a2 = vld1q_f64(records[0] + 4);
-        const float64x2_t b0 = vld1q_f64(records[1]), b1 = vld1q_f64(records[1] + 2), b2 = vld1q_f64(records[1] + 4);
-        vst1q_f64(start, vzip1q_f64(a0, b0));
-        vst1q_f64(start + stride, vzip2q_f64(a0, b0));
-        vst1q_f64(start + 2 * stride, vzip1q_f64(a1, b1));
-        vst1q_f64(end, vzip2q_f64(a1, b1));
-        vst1q_f64(end + stride, vzip1q_f64(a2, b2));
-        vst1q_f64(end + 2 * stride, vzip2q_f64(a2, b2));
+        const float64x2_t a = vld1q_f64(records[0] + first), b = vld1q_f64(records[1] + first);
+        columns[0] = vzip1q_f64(a, b);
+        columns[1] = vzip2q_f64(a, b);
     }
     struct FirstBox {
         int16x8_t start, end;

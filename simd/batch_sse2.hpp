@@ -5,18 +5,6 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-FASTCCD_INLINE void transpose_two_records(const double* const* records, double* start, double* end, std::size_t stride)
-{
-    const __m128d a0 = _mm_loadu_pd(records[0]), a1 = _mm_loadu_pd(records[0] + 2), a2 = _mm_loadu_pd(records[0] + 4);
-    const __m128d b0 = _mm_loadu_pd(records[1]), b1 = _mm_loadu_pd(records[1] + 2), b2 = _mm_loadu_pd(records[1] + 4);
-    _mm_storeu_pd(start, _mm_unpacklo_pd(a0, b0));
-    _mm_storeu_pd(start + stride, _mm_unpackhi_pd(a0, b0));
-    _mm_storeu_pd(start + 2 * stride, _mm_unpacklo_pd(a1, b1));
-    _mm_storeu_pd(end, _mm_unpackhi_pd(a1, b1));
-    _mm_storeu_pd(end + stride, _mm_unpacklo_pd(a2, b2));
-    _mm_storeu_pd(end + 2 * stride, _mm_unpackhi_pd(a2, b2));
-}
-
 template <>
 struct BatchTraits<xsimd::sse2> {
     static FASTCCD_INLINE unsigned bits(__m128d m) { return static_cast<unsigned>(_mm_movemask_pd(m)); }
@@ -39,10 +27,13 @@ struct BatchTraits<xsimd::sse2> {
     static FASTCCD_INLINE __m128d min(__m128d a, __m128d b) { return _mm_min_pd(a, b); }
     static FASTCCD_INLINE __m128d max(__m128d a, __m128d b) { return _mm_max_pd(a, b); }
     static FASTCCD_INLINE __m128d difference(__m128d a, __m128d b) { return _mm_sub_pd(a, b); }
-    static constexpr unsigned transposed_records = 2;
-    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    static constexpr int transposed_columns = 2;
+    template <class Batch>
+    static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns)
     {
-        transpose_two_records(records, start, end, stride);
+        const __m128d a = _mm_loadu_pd(records[0] + first), b = _mm_loadu_pd(records[1] + first);
+        columns[0] = _mm_unpacklo_pd(a, b);
+        columns[1] = _mm_unpackhi_pd(a, b);
     }
     struct FirstBox {
         __m128i start, end;

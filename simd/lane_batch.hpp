@@ -78,11 +78,8 @@ struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
     template <class T = Traits>
     using Joiner = typename T::Joiner;
 
-    static constexpr unsigned transposed_records = Traits::transposed_records;
-    static FASTCCD_INLINE void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
-    {
-        Traits::transpose_records(records, start, end, stride);
-    }
+    static constexpr int transposed_columns = Traits::transposed_columns;
+    static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns) { Traits::transpose(records, first, columns); }
 
     using FirstBox = typename Traits::FirstBox;
     static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return Traits::first_box(box, separation); }

@@ -38,14 +38,14 @@
 // Everything else is left undecided. So the bits do not depend on the instruction set or the batch.
 #pragma once
 
-#include <block_source.hpp>
 #include <part_certificates.hpp>
 #include <root_stages.hpp>
 #include <screened_parts.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-template <PairKind kind, class L>
+/// Source: how the tile's pairs are read, PackedPairs or IndexedPairs.
+template <PairKind kind, class L, class Source>
 class Pipeline {
 public:
     static void run_tile(const TileRequest& request, TileScratch& scratch)
@@ -74,7 +74,7 @@ private:
     const ScreeningBounds in_double_, in_single_;
     const double cutoff_;
     TileScratch& scratch_;
-    BlockSource<kind, L> source_;
+    Source source_;
     RootStages<kind, L> root_stages_;
 
     FASTCCD_INLINE Pipeline(const TileRequest& request, TileScratch& scratch)
@@ -125,12 +125,12 @@ private:
     template <class S>
     void screen_group(std::size_t first, std::size_t count)
     {
-        const double* const blocks = source_.group(first);
+        source_.begin_group(first);
         std::uint64_t kept = 0, beyond = 0;
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
-            const Parts<S, L> parts = next_parts<S>(source_, blocks, i, count);
+            const auto parts = next_parts<S, L>(source_, first, i, count);
             PairRecord<S> record;
-            record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
+            record.r = motion_of_parts(parts, parameters_.t_max);
             const Screening found = screen(record);
             ask_ahead(source_, parts);  // here 1 to 4 % faster than before the batch is read (bench/LIMITS.md)
             kept |= std::uint64_t{found.kept} << i;
@@ -140,7 +140,7 @@ private:
         kept &= in_use;
         beyond &= in_use;
         if constexpr (Lane<S>::is_single)
-            if (beyond != 0) screen_again(blocks, kept, beyond);
+            if (beyond != 0) screen_again(first, kept, beyond);
         for (; beyond != 0; beyond &= beyond - 1)
             set_bit(scratch_.is_undecided, source_.number(first + static_cast<unsigned>(__builtin_ctzll(beyond))));
         scratch_.dense = 2 * static_cast<std::size_t>(__builtin_popcountll(kept)) >= count;
@@ -154,7 +154,7 @@ private:
             for (unsigned j = 0; j < 8; ++j) {
                 const auto i = static_cast<std::size_t>(__builtin_ctzll(kept | last));
                 kept &= kept - 1;
-                queue.pairs[queue.size + k + j] = in_blocks(blocks, i);
+                source_.keep_place(queue, queue.size + k + j, first + i);
                 queue.numbers[queue.size + k + j] = static_cast<double>(source_.number(first + i));
             }
         }
@@ -162,22 +162,22 @@ private:
     }
 
     /// The pairs of a group that are beyond the range of single precision, in double. Those that stay beyond are left in `beyond`.
-    __attribute__((noinline)) void screen_again(const double* blocks, std::uint64_t& kept, std::uint64_t& beyond)
+    __attribute__((noinline)) void screen_again(std::size_t first, std::uint64_t& kept, std::uint64_t& beyond)
     {
         std::uint64_t still_beyond = 0;
         for (std::size_t i = 0; i < group_pairs; i += width) {
             const std::uint64_t lanes = beyond >> i & lanes_in_use<L>(width);
             if (lanes == 0) continue;
             PairRecord<L> record;
-            const Screening found = screen_again(in_blocks(blocks, i), record);
+            const Screening found = screen_again(source_.place(first + i), record);
             kept |= (found.kept & lanes) << i;
             still_beyond |= (found.beyond & lanes) << i;
         }
         beyond = still_beyond;
     }
-    FASTCCD_INLINE Screening screen_again(const double* coordinates, PairRecord<L>& record)
+    FASTCCD_INLINE Screening screen_again(typename Source::Place place, PairRecord<L>& record)
     {
-        record.r = relative_motion<L>(coordinates, block_pairs, parameters_.t_max);
+        record.r = relative_motion_of<L>(Source::coordinates(place), parameters_.t_max);
         return screen(record);
     }
 
@@ -188,20 +188,20 @@ private:
     {
         using S = typename Lane<L>::Screening;
         constexpr bool reads_ahead = Lane<L>::width < most_lanes;
-        const double* const blocks = source_.group(first);
-        Parts<S, L> parts;
+        source_.begin_group(first);
+        Parts<S, L, Source> parts;
         PairRecord<S> record;
         const auto read_batch = [&](std::size_t i) FASTCCD_INLINE_LAMBDA {
-            parts = next_parts<S>(source_, blocks, i, count);
+            parts = next_parts<S, L>(source_, first, i, count);
             if constexpr (!reads_ahead) ask_ahead(source_, parts);
-            record.r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
+            record.r = motion_of_parts(parts, parameters_.t_max);
         };
 
         std::size_t kept = 0;
         if constexpr (reads_ahead) read_batch(0);
         for (std::size_t i = 0; i < count; i += Lane<S>::width) {
             if constexpr (reads_ahead)
-                source_.at_batch(parts.at[0]);
+                source_.ask_ahead(parts.at[0]);
             else
                 read_batch(i);
             const Screening found = screen(record);
@@ -210,7 +210,7 @@ private:
             unsigned lanes = in_use & found.kept;
             kept += static_cast<unsigned>(__builtin_popcount(lanes));
             const S mark = compare(record, lanes);
-            const Parts<S, L> examined = parts;
+            const Parts<S, L, Source> examined = parts;
             if constexpr (reads_ahead) {
                 ask_ahead(source_, parts, 1);
                 read_batch(i + Lane<S>::width < count ? i + Lane<S>::width : i);
@@ -225,10 +225,10 @@ private:
 
     /// Pairs beyond the range in which they were examined, in double. Returns how many screening leaves.
     template <class S>
-    __attribute__((noinline)) std::size_t examine_again(const Parts<S, L>& parts, std::size_t first, unsigned beyond)
+    __attribute__((noinline)) std::size_t examine_again(const Parts<S, L, Source>& parts, std::size_t first, unsigned beyond)
     {
         std::size_t kept = 0;
-        for (unsigned k = 0; k < Parts<S, L>::count; ++k) {
+        for (unsigned k = 0; k < Parts<S, L, Source>::count; ++k) {
             const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
             if (lanes == 0) continue;
             PairRecord<L> record;
@@ -276,27 +276,13 @@ private:
             const unsigned count = queue.size < width ? queue.size : width;
             queue.size -= count;
             source_.meanwhile();
-            const double** const pairs = queue.pairs + queue.size;
-            for (unsigned lane = count; lane < width; ++lane) pairs[lane] = pairs[count - 1];
             PairRecord<L> record;
-            record.r = relative_motion_of<L>(typename Lane<L>::Collector{source_.blocks(), pairs}, parameters_.t_max);
+            record.r = relative_motion_of<L>(source_.collected(queue, count), parameters_.t_max);
             compute_pair_again(record);
             record.pair = Lane<L>::load(&queue.numbers[queue.size]);
             examine(record, lanes_in_use<L>(count));
         }
-        if (!source_.is_in_place()) keep_waiting();
-    }
-
-    /// Copies what is left in [screened], less than a batch, before other blocks take its place: pair k to lane k of `waiting`.
-    void keep_waiting()
-    {
-        for (unsigned k = 0; k < scratch_.screened.size; ++k) {
-            double* const to = scratch_.waiting + k;
-            const double* const from = scratch_.screened.pairs[k];
-            if (from == to) continue;
-            for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * block_pairs] = from[c * block_pairs];
-            scratch_.screened.pairs[k] = to;
-        }
+        source_.end_group(queue);
     }
 
     /// Certificates on [0, cutoff] and two leaves more, the rest of the one that the cutoff lies in and room for the rounding of this

@@ -1,18 +1,31 @@
-// One tile by the lanes of one type, whatever is asked.
+// One tile by the lanes of one type, whatever is asked and however its pairs lie.
 #pragma once
 
+#include <indexed_pairs.hpp>
+#include <packed_pairs.hpp>
 #include <pipeline.hpp>
 #include <separation_pipeline.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
+template <PairKind kind, class L, class Source>
+FASTCCD_INLINE void run_tile_from(const TileRequest& request, TileScratch& scratch)
+{
+    if (request.parameters->separation.distance > 0.0)
+        SeparationPipeline<kind, L, Source>::run_tile(request, scratch);
+    else
+        Pipeline<kind, L, Source>::run_tile(request, scratch);
+}
+
 template <PairKind kind, class L>
 FASTCCD_INLINE void run_tile_of(const TileRequest& request, TileScratch& scratch)
 {
-    if (request.parameters->separation.distance > 0.0)
-        SeparationPipeline<kind, L>::run_tile(request, scratch);
+    if (request.source->view == nullptr)
+        run_tile_from<kind, L, IndexedPairs<kind, L>>(request, scratch);
+    else if (request.source->view->layout() == PairView::Layout::interleaved)
+        run_tile_from<kind, L, PackedPairs<L, Interleaved>>(request, scratch);
     else
-        Pipeline<kind, L>::run_tile(request, scratch);
+        run_tile_from<kind, L, PackedPairs<L, InBlocks>>(request, scratch);
 }
 
 /// See KernelTable::run_tile.

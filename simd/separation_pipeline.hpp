@@ -31,98 +31,36 @@ FASTCCD_INLINE void for_each_field(const AdvancingQueue&, Record& record, Visit 
     visit(record.last_time), visit(record.last_gap);
 }
 
+/// What is done with [candidates], however they were read.
 template <PairKind kind, class L>
-class SeparationPipeline {
+class SeparationStages {
 public:
-    static void run_tile(const TileRequest& request, TileScratch& scratch)
-    {
-        SeparationPipeline pipeline{request, scratch};
-        clear_results<L>(scratch, request.count);
-        scratch.candidates.size = scratch.advancing.size = 0;
-        const std::size_t size = pipeline.source_.size();
-        for (std::size_t first = 0; first < size; first += group_pairs) {
-            const double* const blocks = pipeline.source_.group(first);
-            const std::size_t count = size - first < group_pairs ? size - first : group_pairs;
-            for (std::size_t i = 0; i < count; i += Lane<Screening>::width) {
-                const Parts<Screening, L> parts = next_parts<Screening>(pipeline.source_, blocks, i, count);
-                ask_ahead(pipeline.source_, parts);
-                pipeline.screen(parts, first + i, lanes_in_use<Screening>(count - i));
-            }
-        }
-        pipeline.look_first(1);
-        while (scratch.advancing.size > 0) pipeline.advance();
-    }
-
-private:
-    using Screening = typename Lane<L>::Screening;
-    static constexpr unsigned width = Lane<L>::width;
-
-    const SearchParameters& parameters_;
-    const FartherBounds bounds_, screening_bounds_;
-    const double limit_;
-    TileScratch& scratch_;
-    BlockSource<kind, L> source_;
-    unsigned first_new_ = 0;  ///< Pairs from here on in [advancing] have had their first look alone.
-
-    FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& scratch)
+    FASTCCD_INLINE SeparationStages(const TileRequest& request, TileScratch& scratch)
         : parameters_{*request.parameters}, bounds_{SeparationBounds{parameters_.bounds.rho}.certificates(parameters_.separation)},
-          screening_bounds_{Lane<Screening>::is_single ? SeparationBounds{parameters_.bounds.rho}.certificates_in_single(parameters_.separation)
-                                                       : bounds_},
-          limit_{time_limit(request.cutoff)}, scratch_{scratch}, source_{request, scratch}
+          limit_{time_limit(request.cutoff)}, scratch_{scratch}
     {
-    }
-
-    FASTCCD_INLINE void screen(const Parts<Screening, L>& parts, std::size_t first, unsigned lanes)
-    {
-        using S = Screening;
-        const RelativeMotion<S> r = relative_motion_in<S, L>(parts.at, block_pairs, parameters_.t_max);
-        Extents<S> extents;
-        const LaneMask<S> along_axis = linear_certificate<kind>(r, screening_bounds_, extents);
-        const Scales<S> scale = scales(extents);
-        const CoplanarityCubic<S> f = coplanarity_cubic(r, cross_product(r, 0, 1));
-        const unsigned in_range = Lane<S>::bits(in_range_of_screening(r, f, extents));
-        if (const unsigned beyond = lanes & ~in_range; beyond != 0) take_beyond(parts, first, beyond);
-        lanes &= in_range & ~Lane<S>::bits(along_axis | farther_by_volume<kind>(f, scale, screening_bounds_));
-        if (lanes == 0) return;
-        const ApartOnHalves<S> farther =
-            visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
-                return farther_on_halves<kind>(f, p, q, t, s, extents, scale, screening_bounds_);
-            });
-        lanes &= ~Lane<S>::bits(farther.first & farther.second);
-        if (lanes == 0) return;
-        queue_parts(scratch_.candidates, source_, parts, first, broadcast<S>(0.0), lanes, parameters_.t_max);
-        look_first_if_many();
-    }
-
-    template <class S>
-    FASTCCD_INLINE LaneMask<S> in_range_of_screening(const RelativeMotion<S>& r, const CoplanarityCubic<S>& f, const Extents<S>& extents) const
-    {
-        if constexpr (Lane<S>::is_single)
-            return in_lane_range(f, extents, screening_bounds_);
-        else
-            return in_separation_range(r, extents);
-    }
-
-    /// Pairs beyond the range in which they were screened: to the scalar search, or on in double. Rare, so out of the way.
-    __attribute__((noinline)) void take_beyond(const Parts<Screening, L>& parts, std::size_t first, unsigned beyond)
-    {
-        for (unsigned k = 0; k < Parts<Screening, L>::count; ++k) {
-            const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
-            if (lanes == 0) continue;
-            PairRecord<L> record;
-            record.r = relative_motion<L>(parts.at[k], block_pairs, parameters_.t_max);
-            record.pair = source_.numbers(first + k * width);
-            const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, extents(record.r)));
-            leave_undecided(scratch_, record.pair, lanes & ~decidable);
-            push(scratch_.candidates, decidable, record);
-        }
-        look_first_if_many();
+        scratch.candidates.size = scratch.advancing.size = 0;
     }
 
     FASTCCD_INLINE void look_first_if_many()
     {
         if (scratch_.candidates.size >= PairQueue::drain_at) look_first(width);
     }
+
+    void finish()
+    {
+        look_first(1);
+        while (scratch_.advancing.size > 0) advance();
+    }
+
+private:
+    static constexpr unsigned width = Lane<L>::width;
+
+    const SearchParameters& parameters_;
+    const FartherBounds bounds_;
+    const double limit_;
+    TileScratch& scratch_;
+    unsigned first_new_ = 0;  ///< Pairs from here on in [advancing] have had their first look alone.
 
     /// The certificates in double and the first look, of batches from the end, until fewer than `least` pairs are left.
     void look_first(unsigned least)
@@ -241,6 +179,96 @@ private:
             set_bit(scratch_.reported, i);
             if ((proven >> lane & 1) == 0) set_bit(scratch_.is_unproven, i);
         });
+    }
+};
+
+/// Source: how the tile's pairs are read, PackedPairs or IndexedPairs.
+template <PairKind kind, class L, class Source>
+class SeparationPipeline {
+public:
+    static void run_tile(const TileRequest& request, TileScratch& scratch)
+    {
+        SeparationPipeline pipeline{request, scratch};
+        clear_results<L>(scratch, request.count);
+        const std::size_t size = pipeline.source_.size();
+        for (std::size_t first = 0; first < size; first += group_pairs) {
+            pipeline.source_.begin_group(first);
+            const std::size_t count = size - first < group_pairs ? size - first : group_pairs;
+            for (std::size_t i = 0; i < count; i += Lane<Screening>::width) {
+                const auto parts = next_parts<Screening, L>(pipeline.source_, first, i, count);
+                ask_ahead(pipeline.source_, parts);
+                pipeline.screen(parts, first + i, lanes_in_use<Screening>(count - i));
+            }
+        }
+        pipeline.stages_.finish();
+    }
+
+private:
+    using Screening = typename Lane<L>::Screening;
+    static constexpr unsigned width = Lane<L>::width;
+
+    const SearchParameters& parameters_;
+    const FartherBounds bounds_;
+    TileScratch& scratch_;
+    Source source_;
+    SeparationStages<kind, L> stages_;
+
+    FASTCCD_INLINE SeparationPipeline(const TileRequest& request, TileScratch& scratch)
+        : parameters_{*request.parameters}, bounds_{screening_bounds(SeparationBounds{parameters_.bounds.rho}, parameters_.separation)},
+          scratch_{scratch}, source_{request, scratch}, stages_{request, scratch}
+    {
+    }
+
+    static FASTCCD_INLINE FartherBounds screening_bounds(const SeparationBounds& bounds, const SeparationParameters& separation)
+    {
+        return Lane<Screening>::is_single ? bounds.certificates_in_single(separation) : bounds.certificates(separation);
+    }
+
+    FASTCCD_INLINE void screen(const Parts<Screening, L, Source>& parts, std::size_t first, unsigned lanes)
+    {
+        using S = Screening;
+        const RelativeMotion<S> r = motion_of_parts(parts, parameters_.t_max);
+        Extents<S> extents;
+        const LaneMask<S> along_axis = linear_certificate<kind>(r, bounds_, extents);
+        const Scales<S> scale = scales(extents);
+        const CoplanarityCubic<S> f = coplanarity_cubic(r, cross_product(r, 0, 1));
+        const unsigned in_range = Lane<S>::bits(in_range_of_screening(r, f, extents));
+        if (const unsigned beyond = lanes & ~in_range; beyond != 0) take_beyond(parts, first, beyond);
+        lanes &= in_range & ~Lane<S>::bits(along_axis | farther_by_volume<kind>(f, scale, bounds_));
+        if (lanes == 0) return;
+        const ApartOnHalves<S> farther =
+            visit_edge_functions<kind>(r, [&](const auto& p, const auto& q, const auto& t, const auto& s) FASTCCD_INLINE_LAMBDA {
+                return farther_on_halves<kind>(f, p, q, t, s, extents, scale, bounds_);
+            });
+        lanes &= ~Lane<S>::bits(farther.first & farther.second);
+        if (lanes == 0) return;
+        queue_parts(scratch_.candidates, source_, parts, first, broadcast<S>(0.0), lanes, parameters_.t_max);
+        stages_.look_first_if_many();
+    }
+
+    template <class S>
+    FASTCCD_INLINE LaneMask<S> in_range_of_screening(const RelativeMotion<S>& r, const CoplanarityCubic<S>& f, const Extents<S>& extents) const
+    {
+        if constexpr (Lane<S>::is_single)
+            return in_lane_range(f, extents, bounds_);
+        else
+            return in_separation_range(r, extents);
+    }
+
+    /// Pairs beyond the range in which they were screened: to the scalar search, or on in double. Rare, so out of the way.
+    __attribute__((noinline)) void take_beyond(const Parts<Screening, L, Source>& parts, std::size_t first, unsigned beyond)
+    {
+        for (unsigned k = 0; k < Parts<Screening, L, Source>::count; ++k) {
+            const unsigned lanes = beyond >> k * width & lanes_in_use<L>(width);
+            if (lanes == 0) continue;
+            PairRecord<L> record;
+            record.r = relative_motion_of<L>(Source::coordinates(parts.at[k]), parameters_.t_max);
+            record.pair = source_.numbers(first + k * width);
+            const unsigned decidable = lanes & Lane<L>::bits(in_separation_range(record.r, extents(record.r)));
+            leave_undecided(scratch_, record.pair, lanes & ~decidable);
+            push(scratch_.candidates, decidable, record);
+        }
+        stages_.look_first_if_many();
     }
 };
 

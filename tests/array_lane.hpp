@@ -168,10 +168,10 @@ struct Lane<Array<T, n>> {
         }
         unsigned bits;
     };
-    static constexpr unsigned transposed_records = One::transposed_records;
-    static void transpose_records(const double* const* records, double* start, double* end, std::size_t stride)
+    static constexpr int transposed_columns = 1;
+    static void transpose(const double* const* records, int first, Values* columns)
     {
-        One::transpose_records(records, start, end, stride);
+        columns[0] = each<Values>([&](unsigned i) { return records[i][first]; });
     }
     using FirstBox = One::FirstBox;
     static FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return One::first_box(box, separation); }

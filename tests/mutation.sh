@@ -100,7 +100,7 @@ mutant 'single: part, cubic = 0' $bounds 's/\(54 \* end_rho \+ 114 \+ slack\) \*
 mutant 'single: part, quadratic = 0' $bounds 's/\(8 \* end_rho \+ 12 \+ slack\) \* single_u/0.0/' certificates_test
 mutant 'single: part, quadratic_sum = 0' $bounds 's/\(24 \* end_rho \+ 56 \+ slack\) \* single_u/0.0/' certificates_test
 mutant 'single: floor as in double' $bounds 's/single_length_floor = 0x1p-40/single_length_floor = 0/' error_bounds_test
-mutant 'single: the other part of a batch' simd/screened_parts.hpp 's/L>\(parts\.at\[k\], block_pairs/L>(parts.at[0], block_pairs/' wide_lane_test
+mutant 'single: the other part of a batch' simd/screened_parts.hpp 's/coordinates\(parts\.at\[k\]\), t_max/coordinates(parts.at[0]), t_max/' wide_lane_test
 mutant 'random pairs: those read next queued' simd/pipeline.hpp 's/source_, examined, first/source_, parts, first/' wide_lane_test same_bits_test
 mutant 'lanes without largest extent' $bounds 's/t_max == 1\.0 \? largest_extent : 0\.25 \* largest_extent \* t_max/1e308/' certificates_test same_bits_test truth_test stress
 mutant 'rho of shorter steps = 1' $bounds 's/t_max == 1\.0 \? 1\.0 : 10\.0/1.0/' error_bounds_test
@@ -141,7 +141,10 @@ mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.s
 mutant 'times of the tile before stay' simd/lane_results.hpp 's/scratch\.reported\[i \/ 64\] != 0\) clear/scratch.reported[i \/ 64] == 1) clear/' same_bits_test api_test
 mutant 'times never looked at are not cleared' simd/lane_results.hpp 's/if \(scratch\.cleared < count\) \{\s*clear\(/if (scratch.cleared < count) {\n        clear(count - count % 64 + 0 * /' same_bits_test api_test
 mutant 'roots of half a word not seen' simd/lane_results.hpp 's/for \(const std::uint64_t word : words\) any \|= word;/for (int k = 0; k < 4; ++k) any |= words[k];/' same_bits_test api_test
-mutant 'pairs that wait are not kept' simd/pipeline.hpp 's/if \(!source_\.is_in_place\(\)\) keep_waiting\(\);//' wide_lane_test
+mutant 'pairs that wait are not kept' simd/packed_pairs.hpp 's/if \(!group_is_in_place_\) keep_waiting\(screened\);//' wide_lane_test
+mutant 'interleaved: pairs that wait kept in rows' simd/packed_pairs.hpp 's/struct Interleaved \{\s*static constexpr std::size_t stride = 1;/struct Interleaved {\n    static constexpr std::size_t stride = block_pairs;/' same_bits_test
+mutant 'interleaved: the end of the array read beyond' simd/packed_pairs.hpp 's/ && \(!is_interleaved \|\| count % block_pairs == 0\)//' array_ends_test
+mutant 'indexed: a pair looked up again by another number' simd/indexed_pairs.hpp 's/pairs_ \+ 2 \* number, lane, scratch_/pairs_ + 2 * (number ^ 1), lane, scratch_/' indexed_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test
 mutant 'halved edge functions by sign alone' $halves 's/broadcast<L>\(bounds\.quadratic\) \* area,/broadcast<L>(0.0) * area,/' certificates_test same_bits_test truth_test
@@ -403,7 +406,7 @@ mutant 'boxes: of coordinates that are not finite' $boxes 's/if \(bounds\.not_fi
 mutant 'boxes: third corner left out' $boxes 's/faces \? join\(two, corner\(2\)\) : two/two/' boxes_test
 mutant 'boxes: apart at one end' kernels/lane.hpp 's/(first\.start\[k\] < second\.start\[k\]\)) &/$1 |/' boxes_test
 mutant 'boxes: touching is apart' kernels/lane.hpp 's/first\.(start|end)\[k\] < second/first.$1\[k] <= second/g' boxes_test
-mutant 'boxes: wrong pair listed' simd/block_source.hpp 's/listed\[size\] = static_cast<std::uint16_t>\(i\);\s*size \+=/listed[size] = static_cast<std::uint16_t>(i ^ 1);\n            size +=/' boxes_test
+mutant 'boxes: wrong pair listed' simd/indexed_pairs.hpp 's/listed\[size\] = static_cast<std::uint16_t>\(i\);\s*size \+=/listed[size] = static_cast<std::uint16_t>(i ^ 1);\n            size +=/' boxes_test
 }
 
 all_mutants  # that each of them still changes something

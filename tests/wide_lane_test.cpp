@@ -1,6 +1,7 @@
 // The pipeline on a portable lane type of 8 pairs: the logic of the widest batches, on machines without them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
 
 #include <run_tile.hpp>
@@ -22,8 +23,11 @@ std::size_t expect_decided_as_searched(oracle::Kind kind, const std::vector<orac
     options.reference = true;
     const Answer expected = answer(kind, buffer.view(), options);
     std::size_t decided = 0;
-    // Blocks read in place, and blocks filled anew for every group.
-    for (const PairView& view : {buffer.view(), interleaved(pairs)}) {
+    // Blocks and records read in place, and blocks filled anew for every group.
+    std::array<const double*, pair_coordinates> columns{};
+    for (std::size_t c = 0; c < pair_coordinates; ++c) columns[c] = &pairs[0][c / 3][c % 3];
+    for (const PairView& view :
+         {buffer.view(), interleaved(pairs), PairView::strided(columns, static_cast<std::ptrdiff_t>(pair_coordinates), pairs.size())}) {
         const PairSource source{&view, {}, view.size()};
         // Either way to go about it, whichever this machine takes.
         for (const Preferences& preferences : {Preferences{CacheLevel::first, false}, Preferences{CacheLevel::second, true}}) {

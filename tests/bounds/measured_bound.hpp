@@ -28,6 +28,7 @@ struct Computed {
 
 /// Pairs as screening sees them in single precision.
 using Single = portable::Array<float, 2>;
+using One = portable::Array<double, 1>;
 
 struct ComputedInSingle {
     portable::RelativeMotion<Single> r;
@@ -36,7 +37,7 @@ struct ComputedInSingle {
     ScreeningBounds bounds;
 
     explicit ComputedInSingle(const double* coordinates, double t_max)
-        : r{portable::relative_motion_in<Single, portable::Array<double, 1>>({coordinates, coordinates}, 1, t_max)},
+        : r{portable::relative_motion_in<Single, One>({portable::InRows<One>{coordinates, 1}, portable::InRows<One>{coordinates, 1}}, t_max)},
           bounds{ErrorBounds{t_max}.screening_in_single()}
     {
         portable::linear_certificate<PairKind::vertex_face>(r, bounds.whole, extents);

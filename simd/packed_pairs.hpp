@@ -1,0 +1,243 @@
+// Packed pairs as screening reads them, from any layout a PairView can have: in blocks of the native layout, or interleaved. Other layouts are
+// copied to blocks, floats to doubles.
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+
+#include <fastccd/pair_view.hpp>
+#include <kernel_table.hpp>
+#include <lane.hpp>
+#include <prefetcher.hpp>
+#include <relative_motion.hpp>
+
+namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
+
+/// Coordinates of interleaved pairs, each to be asked for once, in order.
+template <class L>
+class TransposedPairs {
+public:
+    FASTCCD_INLINE explicit TransposedPairs(const double* first)
+    {
+        for (unsigned lane = 0; lane < width; ++lane) pairs_[lane] = first + lane * pair_coordinates;
+    }
+    FASTCCD_INLINE explicit TransposedPairs(const double* const* pairs)
+    {
+        for (unsigned lane = 0; lane < width; ++lane) pairs_[lane] = pairs[lane];
+    }
+    FASTCCD_INLINE L operator()(int c)
+    {
+        if (c % columns == 0) Lane<L>::transpose(pairs_, c, columns_);
+        return columns_[c % columns];
+    }
+
+private:
+    static constexpr unsigned width = Lane<L>::width;
+    static constexpr int columns = Lane<L>::transposed_columns;
+    static_assert(pair_coordinates % columns == 0);
+
+    const double* pairs_[width];
+    L columns_[columns];
+};
+
+/// Blocks of 8 pairs, [24][8].
+struct InBlocks {
+    /// From a coordinate of a pair to the next one.
+    static constexpr std::size_t stride = block_pairs;
+
+    template <class Number>
+    static FASTCCD_INLINE Number* pair(Number* first, std::size_t i)
+    {
+        return first + i / block_pairs * block_coordinates + i % block_pairs;
+    }
+    template <class L>
+    static FASTCCD_INLINE InRows<L> coordinates(const double* pair)
+    {
+        return {pair, static_cast<int>(stride)};
+    }
+    template <class L>
+    static FASTCCD_INLINE auto collected(const double* blocks, const double* const* pairs)
+    {
+        return typename Lane<L>::Collector{blocks, pairs};
+    }
+};
+
+/// 24 coordinates a pair, one pair after the other. They are transposed in registers each time they are read: copied to blocks first, a pair
+/// took 3 ns longer, of which a third is storing it (bench/LIMITS.md).
+struct Interleaved {
+    static constexpr std::size_t stride = 1;
+
+    template <class Number>
+    static FASTCCD_INLINE Number* pair(Number* first, std::size_t i)
+    {
+        return first + i * pair_coordinates;
+    }
+    template <class L>
+    static FASTCCD_INLINE TransposedPairs<L> coordinates(const double* pair)
+    {
+        return TransposedPairs<L>{pair};
+    }
+    template <class L>
+    static FASTCCD_INLINE TransposedPairs<L> collected(const double* /*blocks*/, const double* const* pairs)
+    {
+        return TransposedPairs<L>{pairs};
+    }
+};
+
+/// The last of `count` pairs stands for those past it, to a multiple of 8.
+template <class T>
+FASTCCD_INLINE void copy_interleaved(const T* __restrict pairs, std::size_t count, double* __restrict copy)
+{
+    for (std::size_t k = 0; k < count * pair_coordinates; ++k) copy[k] = static_cast<double>(pairs[k]);
+    for (std::size_t k = count * pair_coordinates; k < block_coordinates; ++k) copy[k] = copy[k - pair_coordinates];
+}
+
+/// Numbers that follow one another. Without __restrict, which says that nothing stored here changes what is still to
+/// be read, compilers move one number at a time.
+template <std::size_t count, class T>
+FASTCCD_INLINE void copy_row(const T* __restrict data, double* __restrict row)
+{
+    for (std::size_t k = 0; k < count; ++k) row[k] = static_cast<double>(data[k]);
+}
+
+template <class T>
+FASTCCD_INLINE void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, double* block)
+{
+    const std::ptrdiff_t stride = pairs.stride();
+    for (std::size_t c = 0; c < pair_coordinates; ++c) {
+        const T* const data = static_cast<const T*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
+        double* const row = block + c * block_pairs;
+        if (stride == 1 && count == block_pairs)
+            copy_row<block_pairs>(data, row);
+        else
+            for (std::size_t lane = 0; lane < block_pairs; ++lane)
+                row[lane] = static_cast<double>(data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * stride]);
+    }
+}
+
+/// What the stages read of a tile of packed pairs.
+template <class L, class Layout>
+class PackedPairs {
+public:
+    /// Where the first coordinate of a pair lies, and by its layout the others, and the pairs that follow.
+    using Place = const double*;
+
+    FASTCCD_INLINE PackedPairs(const TileRequest& tile, TileScratch& scratch)
+        : pairs_{*tile.source->view}, first_{tile.first}, size_{tile.count}, scratch_{scratch},
+          prefetcher_{*tile.source, tile.first, tile.preferences.into}
+    {
+        if (pairs_.layout() != PairView::Layout::strided && pairs_.scalar() == PairView::Scalar::float64)
+            in_place_ = static_cast<const double*>(pairs_.data()) + first_ * pair_coordinates;
+    }
+
+    [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
+
+    /// Number in the tile of pair `i` of this source, and of the pairs from `i` on, in the group begun last.
+    [[nodiscard]] FASTCCD_INLINE std::size_t number(std::size_t i) const { return i; }
+    [[nodiscard]] FASTCCD_INLINE L numbers(std::size_t i) const { return broadcast<L>(static_cast<double>(i)) + Lane<L>::lane_number(); }
+
+    /// Before pairs from `i` on, a multiple of group_pairs. The last pair stands for those past the end, to a multiple of 8. Groups are to be
+    /// begun in order.
+    FASTCCD_INLINE void begin_group(std::size_t i)
+    {
+        const std::size_t count = size_ - i < group_pairs ? size_ - i : group_pairs;
+        group_is_in_place_ = in_place_ != nullptr && (!is_interleaved || count % block_pairs == 0);
+        if (group_is_in_place_) {
+            group_ = in_place_ + i * pair_coordinates;
+            return;
+        }
+        group_ = scratch_.blocks[0];
+        to_copy_ = i;
+        group_end_ = i + count;
+        copy_next();
+    }
+    /// Before the 8 pairs from `i` on, of the group, are read. Those after them are copied then, so that memory is asked at an even rate, and
+    /// nothing is read right after it was written: with a whole group copied first, strided pairs took a sixth longer (bench/LIMITS.md).
+    FASTCCD_INLINE void begin_block(std::size_t /*i*/)
+    {
+        if (to_copy_ < group_end_) copy_next();
+    }
+    /// Of a pair of the group.
+    [[nodiscard]] FASTCCD_INLINE Place place(std::size_t i) const { return Layout::pair(group_, i % group_pairs); }
+
+    /// Coordinates, lane by lane, of the pair there and those after it.
+    static FASTCCD_INLINE auto coordinates(Place place) { return Layout::template coordinates<L>(place); }
+
+    /// Once for every batch of the group, before it is read or soon after. Batch by batch, although 8 blocks lie between what is
+    /// asked for and what is read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family
+    /// 25 (bench/LIMITS.md).
+    FASTCCD_INLINE void ask_ahead(Place batch)
+    {
+        if (group_is_in_place_) prefetcher_.at_pairs(batch, Lane<L>::width);
+    }
+    /// Before a batch of a later stage.
+    FASTCCD_INLINE void meanwhile() { prefetcher_.meanwhile(); }
+
+    /// For the pair at `k` in [screened], which is pair `i` of the group.
+    FASTCCD_INLINE void keep_place(ScreenedQueue& screened, unsigned k, std::size_t i) const { screened.pairs[k] = place(i); }
+    /// Coordinates of the `count` pairs after the last one in [screened].
+    FASTCCD_INLINE auto collected(ScreenedQueue& screened, unsigned count) const
+    {
+        const double** const pairs = screened.pairs + screened.size;
+        for (unsigned lane = count; lane < Lane<L>::width; ++lane) pairs[lane] = pairs[count - 1];
+        return Layout::template collected<L>(in_place_ != nullptr ? in_place_ : scratch_.blocks[0], pairs);
+    }
+    /// Copies what is left in [screened], less than a batch, if the next group takes the place of this one.
+    FASTCCD_INLINE void end_group(ScreenedQueue& screened)
+    {
+        if (!group_is_in_place_) keep_waiting(screened);
+    }
+
+private:
+    static constexpr bool is_interleaved = std::is_same_v<Layout, Interleaved>;
+
+    FASTCCD_INLINE void keep_waiting(ScreenedQueue& screened)
+    {
+        for (unsigned k = 0; k < screened.size; ++k) {
+            double* const to = Layout::pair(scratch_.waiting, k);
+            const double* const from = screened.pairs[k];
+            if (from == to) continue;
+            for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * Layout::stride] = from[c * Layout::stride];
+            screened.pairs[k] = to;
+        }
+    }
+
+    FASTCCD_INLINE void copy_next()
+    {
+        double* const block = scratch_.blocks[to_copy_ % group_pairs / block_pairs];
+        if (pairs_.scalar() == PairView::Scalar::float64)
+            copy<double>(to_copy_, block);
+        else
+            copy<float>(to_copy_, block);
+        to_copy_ += block_pairs;
+    }
+
+    template <class T>
+    FASTCCD_INLINE void copy(std::size_t i, double* block)
+    {
+        const std::size_t first = first_ + i, count = size_ - i < block_pairs ? size_ - i : block_pairs;
+        const bool is_strided = pairs_.layout() == PairView::Layout::strided;
+        const T* const pairs = static_cast<const T*>(pairs_.data()) + (is_strided ? 0 : first * pair_coordinates);
+        if (is_strided)
+            prefetcher_.at_strided_block(first);
+        else
+            prefetcher_.at_pairs(pairs, block_pairs);
+        if constexpr (is_interleaved)
+            copy_interleaved(pairs, count, block);
+        else if (is_strided)
+            pack_strided<T>(pairs_, first, count, block);
+        else
+            copy_row<block_coordinates>(pairs, block);
+    }
+
+    const PairView& pairs_;
+    const std::size_t first_, size_;
+    TileScratch& scratch_;
+    const double* in_place_ = nullptr;  ///< The tile's first pair, if groups are not copied, but perhaps the last one.
+    const double* group_ = nullptr;     ///< The group's first pair.
+    bool group_is_in_place_ = false;
+    std::size_t to_copy_ = 0, group_end_ = 0;  ///< Of the group: the next pair to copy and the end.
+    Prefetcher prefetcher_;
+};
+
+}  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

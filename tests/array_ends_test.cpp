@@ -1,0 +1,155 @@
+// Nothing outside the caller's arrays is read or written: they lie between pages that may not be touched.
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "generators.hpp"
+#include "narrow_phase.hpp"
+
+namespace fastccd::testing {
+namespace {
+
+enum class Side { end, beginning };
+
+/// An array that ends where a page begins that may not be touched, or begins where one ends.
+template <class T>
+class GuardedArray {
+public:
+    GuardedArray(std::size_t size, Side side) : size_{size}
+    {
+        const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+        inside_ = (size * sizeof(T) + page - 1) / page * page;
+        whole_ = inside_ + 2 * page;
+        memory_ = ::mmap(nullptr, whole_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (memory_ == MAP_FAILED) throw std::runtime_error("no memory");
+        char* const inside = static_cast<char*>(memory_) + page;
+        if (inside_ > 0 && ::mprotect(inside, inside_, PROT_READ | PROT_WRITE) != 0) throw std::runtime_error("no pages");
+        first_ = reinterpret_cast<T*>(side == Side::end ? inside + inside_ - size * sizeof(T) : inside);
+    }
+    GuardedArray(const std::vector<T>& values, Side side) : GuardedArray(values.size(), side)
+    {
+        std::copy(values.begin(), values.end(), first_);
+    }
+    GuardedArray(const GuardedArray&) = delete;
+    GuardedArray& operator=(const GuardedArray&) = delete;
+    ~GuardedArray() { ::munmap(memory_, whole_); }
+
+    [[nodiscard]] T* data() const { return first_; }
+    [[nodiscard]] std::size_t size() const { return size_; }
+
+private:
+    std::size_t size_, inside_ = 0, whole_ = 0;
+    void* memory_ = nullptr;
+    T* first_ = nullptr;
+};
+
+std::vector<std::size_t> sizes() { return {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 56, 63, 64, 65, 71, 72, 127, 130, 200, 4095, 4096, 4097, 4104}; }
+
+/// The times of the pairs at `view`, written to an array between guards, are those of the first of `expected`.
+void expect_times(PairKind kind, const PairView& view, const std::vector<double>& expected, Side side, const std::string& what)
+{
+    for (const Isa isa : isas_to_test())
+        for (const double separation : {0.0, 1e-3}) {
+            Options options;
+            options.isa = isa;
+            options.minimum_separation = separation;
+            const GuardedArray<double> toi{view.size(), side};
+            ASSERT_TRUE(time_of_impact(kind, view, options, {toi.data(), toi.size()}).ok());
+            if (separation == 0.0) {
+                ASSERT_TRUE(std::equal(toi.data(), toi.data() + toi.size(), expected.begin())) << what << ' ' << name(isa) << ' ' << view.size();
+            }
+        }
+}
+
+template <class T>
+void check_packed(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const std::vector<double>& expected, Side side)
+{
+    const std::string name = sizeof(T) == sizeof(double) ? "doubles" : "floats";
+    for (const std::size_t size : sizes()) {
+        const std::size_t blocks = (size + block_pairs - 1) / block_pairs;
+        std::vector<T> interleaved(size * pair_coordinates), blocked(blocks * block_coordinates), columns(size * pair_coordinates);
+        for (std::size_t i = 0; i < size; ++i)
+            for (std::size_t c = 0; c < pair_coordinates; ++c) {
+                const T x = static_cast<T>(pairs[i][c / 3][c % 3]);
+                interleaved[i * pair_coordinates + c] = columns[c * size + i] = x;
+                blocked[i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs] = x;
+            }
+        const GuardedArray<T> one_by_one{interleaved, side}, in_blocks{blocked, side}, in_columns{columns, side};
+        std::array<const T*, pair_coordinates> column{}, strided{};
+        for (std::size_t c = 0; c < pair_coordinates; ++c) {
+            column[c] = in_columns.data() + c * size;
+            strided[c] = one_by_one.data() + c;
+        }
+        const PairKind asked = pair_kind(kind);
+        expect_times(asked, PairView::interleaved(one_by_one.data(), size), expected, side, "interleaved " + name);
+        expect_times(asked, PairView::blocked(in_blocks.data(), size), expected, side, "blocked " + name);
+        expect_times(asked, PairView::strided(column, 1, size), expected, side, "columns of " + name);
+        expect_times(asked, PairView::strided(strided, static_cast<std::ptrdiff_t>(pair_coordinates), size), expected, side, "strided " + name);
+        if (::testing::Test::HasFatalFailure()) return;
+    }
+}
+
+TEST(ArrayEnds, PackedPairsAreReadToTheirEndsAndNoFarther)
+{
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        // Dense groups and sparse ones, of numbers that are the same as floats.
+        std::vector<oracle::Pair> pairs, more;
+        for (int round = 0; pairs.size() < sizes().back(); ++round)
+            for (const char* family : {"f32_uniform", "f32_simcloth", "f32_degenerate"}) {
+                generate(family, kind, 50 + round, 200, more);
+                pairs.insert(pairs.end(), more.begin(), more.end());
+            }
+        const std::vector<double> expected = answer(kind, to_buffer(pairs).view(), {}).toi;
+        for (const Side side : {Side::end, Side::beginning}) {
+            check_packed<double>(kind, pairs, expected, side);
+            check_packed<float>(kind, pairs, expected, side);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+// Pairs of a mesh of n triangles and 3 n vertices, every one with the face that follows it.
+TEST(ArrayEnds, IndexedPairsAreReadToTheirEndsAndNoFarther)
+{
+    for (const std::size_t size : sizes()) {
+        std::vector<oracle::Pair> source;
+        generate("uniform", oracle::Kind::vertex_face, 60, size, source);
+        std::vector<double> start(9 * size), end(9 * size);
+        std::vector<int> faces(3 * size);
+        std::vector<VertexFace> pairs(size);
+        for (std::size_t i = 0; i < size; ++i) {
+            for (std::size_t k = 0; k < 9; ++k) {
+                start[9 * i + k] = source[i][1 + k / 3][k % 3];
+                end[9 * i + k] = source[i][5 + k / 3][k % 3];
+            }
+            for (std::size_t k = 0; k < 3; ++k) faces[3 * i + k] = static_cast<int>(3 * i + k);
+            pairs[i] = {static_cast<int>(3 * i), static_cast<int>((i + 1) % size)};
+        }
+        const auto times = [&](const double* x0, const double* x1, const int* f, std::span<const VertexFace> asked, std::span<double> toi) {
+            const MovingMesh mesh{PositionView::rows(x0, 3 * size), PositionView::rows(x1, 3 * size), IndexView::rows(f, size, 3), IndexView{}};
+            for (const Isa isa : isas_to_test()) {
+                Options options;
+                options.isa = isa;
+                ASSERT_TRUE(time_of_impact(mesh, asked, options, toi).ok()) << size;
+            }
+        };
+        std::vector<double> expected(size);
+        times(start.data(), end.data(), faces.data(), pairs, expected);
+        for (const Side side : {Side::end, Side::beginning}) {
+            const GuardedArray<double> x0{start, side}, x1{end, side}, toi{size, side};
+            const GuardedArray<int> f{faces, side};
+            const GuardedArray<VertexFace> asked{pairs, side};
+            times(x0.data(), x1.data(), f.data(), {asked.data(), size}, {toi.data(), size});
+            ASSERT_TRUE(std::equal(expected.begin(), expected.end(), toi.data())) << size;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace fastccd::testing
