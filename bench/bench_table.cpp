@@ -90,9 +90,12 @@ bool in_default_selection(const Case& c)
     if (c.data == "grids") return c.layout == Layout::indexed && c.question == Question::dense && c.threads == 1;
     const bool native = c.scalar == PairView::Scalar::float64 &&
                         (c.layout == Layout::blocked || c.layout == Layout::indexed);
-    if (!native)
-        return c.isa == best_isa() && c.threads == 1 && c.question == Question::dense &&
+    if (!native) {
+        // Of the other layouts, (N,8,3) is what numpy has.
+        const bool is_common = c.layout == Layout::interleaved && c.scalar == PairView::Scalar::float64;
+        return (c.isa == best_isa() || is_common) && c.threads == 1 && c.question == Question::dense &&
                (c.data == "random" || c.data == layout_scene());
+    }
     return c.isa == best_isa() ? c.threads == 1 || c.question != Question::contacts
                                : c.threads == 1 && c.question == Question::dense;
 }

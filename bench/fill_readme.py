@@ -100,11 +100,11 @@ def proven_table():
 
 
 def speed_table(record):
-    """The end-to-end medians of one thread: packed and indexed pairs, per instruction set of four lanes and more."""
+    """The end-to-end medians of one thread, by layout, per instruction set of four lanes and more."""
     rates, last, contacts = {}, {}, {}
     for b in record["benchmarks"]:
         name = b["name"].removesuffix("_median").removesuffix("/manual_time")
-        match = re.fullmatch(r"(vertex_face|edge_edge)/(avx2|avx512|neon)/([^/]+)/(blocked|indexed)/double/threads:1", name)
+        match = re.fullmatch(r"(vertex_face|edge_edge)/(avx2|avx512|neon)/([^/]+)/(blocked|interleaved|indexed)/double/threads:1", name)
         if not match or b.get("aggregate_name", "median") != "median":
             continue
         key = (match[1].replace("_", "-"), match[3], match[4])
