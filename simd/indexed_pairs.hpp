@@ -71,7 +71,7 @@ private:
     static_assert(3 + 2 / columns * columns + columns <= static_cast<int>(vertex_record_size));
 
     const double* const* records_;
-    L columns_[columns];
+    L columns_[columns] = {};
 };
 
 /// What the stages read of a tile of indexed pairs. See PackedPairs for what its functions are for.

@@ -37,7 +37,7 @@ private:
     static_assert(pair_coordinates % columns == 0);
 
     const double* pairs_[width];
-    L columns_[columns];
+    L columns_[columns] = {};
 };
 
 /// Blocks of 8 pairs, [24][8].
