@@ -63,7 +63,7 @@ struct InBlocks {
 };
 
 /// 24 coordinates a pair, one pair after the other. They are transposed in registers each time they are read: copied to blocks first, a pair
-/// took 3 ns longer, of which a third is storing it (bench/LIMITS.md).
+/// took 3 ns longer with AVX2 and AVX-512, of which a third is storing it (bench/LIMITS.md).
 struct Interleaved {
     static constexpr std::size_t stride = 1;
 
