@@ -38,7 +38,7 @@ using RootQueue = LaneQueue<21>;
 struct ScreenedQueue {
     static constexpr unsigned capacity = LaneQueue<1>::capacity;
 
-    const double* pairs[capacity];
+    const void* pairs[capacity];
     alignas(64) double numbers[capacity];
     unsigned size;
 };
@@ -56,6 +56,19 @@ struct RootSearch {
     alignas(64) double end[PairQueue::capacity];  ///< Of the last piece.
     /// Per batch, bits of the lanes that have a first, second, third such piece.
     unsigned pieces[3][PairQueue::capacity];
+};
+
+/// Pairs that are screened before any of them goes on. Their blocks, 12 KiB, are then still in the first-level cache.
+inline constexpr std::size_t group_pairs = 64;
+/// A batch may wait in [screened] when the next group is listed, eight at a time.
+static_assert(group_pairs + most_lanes + 8 <= ScreenedQueue::capacity && tile_pairs % group_pairs == 0);
+
+/// Copies of packed pairs: those of a group, in blocks of the native layout or interleaved, where they cannot be read in place ...
+template <class Number>
+struct CopiedPairs {
+    alignas(64) Number group[group_pairs / block_pairs * block_coordinates];
+    /// ... and a block of the pairs that wait in `screened` while the next group takes their place.
+    alignas(64) Number waiting[block_coordinates];
 };
 
 /// What refinement works on, next to the rows of `slow`.
@@ -77,11 +90,6 @@ struct Looks {
     alignas(64) double n[3][AdvancingQueue::capacity], gap[AdvancingQueue::capacity], square_to_side[AdvancingQueue::capacity];
     unsigned open[AdvancingQueue::capacity];  ///< First pairs of the batches in which that of one is not all that its features can show.
 };
-
-/// Pairs that are screened before any of them goes on. Their blocks, 12 KiB, are then still in the first-level cache.
-inline constexpr std::size_t group_pairs = 64;
-/// A batch may wait in [screened] when the next group is listed, eight at a time.
-static_assert(group_pairs + most_lanes + 8 <= ScreenedQueue::capacity && tile_pairs % group_pairs == 0);
 
 /// Blocks of indexed pairs whose vertices are asked for before they are read.
 inline constexpr std::size_t indexed_ahead = 2;
@@ -121,10 +129,8 @@ struct TileScratch {
     AdvancingQueue advancing;  ///< With a minimum separation: candidates that the first look does not settle.
     ContactGuesses guesses;
     Looks looks;
-    /// The pairs of a group in the native layout or interleaved, where the input is neither ...
-    alignas(64) double blocks[group_pairs / block_pairs][block_coordinates];
-    /// ... and a block of the pairs that wait in `screened` while the next group takes their place.
-    alignas(64) double waiting[block_coordinates];
+    CopiedPairs<double> copied;
+    CopiedPairs<float> copied_floats;
     /// Indexed pairs that their boxes do not keep apart, by their number in the tile; the last one again for the blocks after.
     std::uint16_t listed[tile_pairs + (indexed_ahead + 1) * block_pairs];
     alignas(64) double numbers[group_pairs];                   ///< Those of the blocks of a group, as lanes know them.

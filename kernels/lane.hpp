@@ -56,16 +56,18 @@ struct Lane<double> {
 
     static FASTCCD_INLINE double broadcast(double x) { return x; }
     static FASTCCD_INLINE double load(const double* p) { return *p; }
+    static FASTCCD_INLINE double load(const float* p) { return *p; }
     static FASTCCD_INLINE void store(double* p, double x) { *p = x; }
-    /// Coordinates of pairs from anywhere in blocks of the native layout: number c of the pair in lane i is pairs[i][c * block_pairs].
-    /// Every block begins a multiple of 64 bytes before or after `blocks`.
+    /// Coordinates of pairs from anywhere in blocks of the native layout, doubles or floats: pairs[i] is where number 0 of the pair in lane i
+    /// lies. Every block begins a multiple of 8 numbers before or after `blocks`.
+    template <class Number>
     class Collector {
     public:
-        FASTCCD_INLINE Collector(const double* /*blocks*/, const double* const* pairs) : pair_{pairs[0]} {}
+        FASTCCD_INLINE Collector(const Number* /*blocks*/, const void* const* pairs) : pair_{static_cast<const Number*>(pairs[0])} {}
         FASTCCD_INLINE double operator()(int c) const { return pair_[static_cast<std::size_t>(c) * block_pairs]; }
 
     private:
-        const double* pair_;
+        const Number* pair_;
     };
     /// 0, 1, 2, ... : the number of each lane.
     static FASTCCD_INLINE double lane_number() { return 0.0; }
@@ -98,8 +100,12 @@ struct Lane<double> {
 
     /// Columns of records that transpose() takes at a time.
     static constexpr int transposed_columns = 1;
-    /// Lane i of columns[k] becomes records[i][first + k].
-    static FASTCCD_INLINE void transpose(const double* const* records, int first, double* columns) { columns[0] = records[0][first]; }
+    /// Lane i of columns[k] becomes records[i][first + k], of doubles or floats.
+    template <class Number>
+    static FASTCCD_INLINE void transpose(const Number* const* records, int first, double* columns)
+    {
+        columns[0] = records[0][first];
+    }
 
     /// What the box of the pair's first primitive compares with: highest x y z, 0, minus the lowest x y z, 0, all moved
     /// outwards by `separation`, at both ends.

@@ -76,9 +76,9 @@ FASTCCD_INLINE RelativeMotion<L> relative_motion_of(const At& at, double t_max)
 }
 
 /// Coordinates in rows: lane i of number c is rows[c * stride + i].
-template <class L>
+template <class L, class Number = double>
 struct InRows {
-    const double* rows;
+    const Number* rows;
     int stride;
 
     FASTCCD_INLINE L operator()(int c) const { return Lane<L>::load(rows + c * stride); }

@@ -1,7 +1,7 @@
 // Batches of four doubles or eight floats, in AVX2; its comparison of boxes is also that of AVX-512.
 #pragma once
 
-#include <batch_traits.hpp>
+#include <batch_sse2.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -30,14 +30,36 @@ private:
     static FASTCCD_INLINE __m256i load(const GridBox& box) { return _mm256_load_si256(reinterpret_cast<const __m256i*>(&box)); }
 };
 
+/// Four floats of a, then four of b.
+FASTCCD_INLINE __m256 two_halves(const float* a, const float* b)
+{
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1);
+}
+
+/// Lane i of columns[k] becomes records[i][first + k].
+FASTCCD_INLINE void transpose_eight(const float* const* records, int first, __m256 (&columns)[4])
+{
+    const auto two = [&](int k) FASTCCD_INLINE_LAMBDA { return two_halves(records[k] + first, records[k + 4] + first); };
+    const __m256 r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
+    const __m256d front01 = _mm256_castps_pd(_mm256_unpacklo_ps(r0, r1)), back01 = _mm256_castps_pd(_mm256_unpackhi_ps(r0, r1));
+    const __m256d front23 = _mm256_castps_pd(_mm256_unpacklo_ps(r2, r3)), back23 = _mm256_castps_pd(_mm256_unpackhi_ps(r2, r3));
+    columns[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(front01, front23));
+    columns[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(front01, front23));
+    columns[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(back01, back23));
+    columns[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(back01, back23));
+}
+
 template <>
 struct BatchTraits<xsimd::avx2> : WideBoxes {
     static FASTCCD_INLINE unsigned bits(__m256d m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
-    using Collector = CoordinateCollector<BatchTraits>;
-    static FASTCCD_INLINE __m256d collect(const double* const* from, std::size_t offset)
+    template <class Number>
+    using Collector = CoordinateCollector<BatchTraits, Number>;
+    template <class From>
+    static FASTCCD_INLINE __m256d collect(From from)
     {
-        return _mm256_set_pd(from[3][offset], from[2][offset], from[1][offset], from[0][offset]);
+        return _mm256_set_pd(*from(3), *from(2), *from(1), *from(0));
     }
+    static FASTCCD_INLINE __m256d load(const float* p) { return _mm256_cvtps_pd(_mm_loadu_ps(p)); }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, __m256d x)
     {
         const __m256i order = _mm256_load_si256(reinterpret_cast<const __m256i*>(compress_permutation[bits]));
@@ -83,6 +105,7 @@ struct BatchTraits<xsimd::avx2> : WideBoxes {
     static FASTCCD_INLINE __m256d min(__m256d a, __m256d b) { return _mm256_min_pd(a, b); }
     static FASTCCD_INLINE __m256d max(__m256d a, __m256d b) { return _mm256_max_pd(a, b); }
     static FASTCCD_INLINE __m256d difference(__m256d a, __m256d b) { return _mm256_sub_pd(a, b); }
+    static FASTCCD_INLINE __m256 difference(__m256 a, __m256 b) { return _mm256_sub_ps(a, b); }
     static constexpr int transposed_columns = 4;
     template <class Batch>
     static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns)
@@ -95,6 +118,20 @@ struct BatchTraits<xsimd::avx2> : WideBoxes {
         columns[1] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20);
         columns[2] = _mm256_permute2f128_pd(ab_even, cd_even, 0x31);
         columns[3] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31);
+    }
+    template <class Batch>
+    static FASTCCD_INLINE void transpose(const float* const* records, int first, Batch* columns)
+    {
+        __m128 four[4];
+        transpose_four(records, first, four);
+        for (int k = 0; k < 4; ++k) columns[k] = _mm256_cvtps_pd(four[k]);
+    }
+    template <class Batch>
+    static FASTCCD_INLINE void transpose_singles(const float* const* records, int first, Batch* columns)
+    {
+        __m256 four[4];
+        transpose_eight(records, first, four);
+        for (int k = 0; k < 4; ++k) columns[k] = four[k];
     }
 };
 

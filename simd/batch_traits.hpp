@@ -1,5 +1,5 @@
 // What a lane type needs of an instruction set beside what xsimd 8.1 gives (loads, arithmetic, comparisons, selection): bits of a mask, storing
-// only some lanes, min / max with MINPD's rule, conversions to single precision, transposed records, comparisons of boxes. For each
+// only some lanes, min / max with MINPD's rule, conversions from and to single precision, transposed records, comparisons of boxes. For each
 // instruction set there is a specialization of its own, in the intrinsics of its compiler header: batch_sse2.hpp and the like.
 #pragma once
 
@@ -13,14 +13,19 @@ template <class A>
 struct BatchTraits;
 
 /// Pairs collected coordinate by coordinate.
-template <class Traits>
+template <class Traits, class Number>
 class CoordinateCollector {
 public:
-    FASTCCD_INLINE CoordinateCollector(const double* /*blocks*/, const double* const* pairs) : pairs_{pairs} {}
-    FASTCCD_INLINE auto operator()(int c) const { return Traits::collect(pairs_, static_cast<std::size_t>(c) * block_pairs); }
+    FASTCCD_INLINE CoordinateCollector(const Number* /*blocks*/, const void* const* pairs) : pairs_{pairs} {}
+    FASTCCD_INLINE auto operator()(int c) const
+    {
+        return Traits::collect([&](unsigned lane) FASTCCD_INLINE_LAMBDA {
+            return static_cast<const Number*>(pairs_[lane]) + static_cast<std::size_t>(c) * block_pairs;
+        });
+    }
 
 private:
-    const double* const* pairs_;
+    const void* const* pairs_;
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -78,6 +78,7 @@ private:
 template <PairKind kind, class L>
 class IndexedPairs {
 public:
+    static constexpr bool holds_floats = false;
     /// Where the vertex record of x0 stands in a block of records, [4][8].
     using Place = const double* const*;
 

@@ -40,10 +40,24 @@ struct BatchArithmetic {
     static FASTCCD_INLINE Mask less(Batch a, Batch b) { return a < b; }
     static FASTCCD_INLINE Mask less_equal(Batch a, Batch b) { return a <= b; }
     static FASTCCD_INLINE unsigned bits(Mask m) { return Traits::bits(m.data); }
+
+    static FASTCCD_INLINE Batch difference(Batch a, Batch b) { return Traits::difference(a, b); }
 };
 
 template <class A>
-struct Lane<xsimd::batch<float, A>> : BatchArithmetic<float, A> {};
+struct Lane<xsimd::batch<float, A>> : BatchArithmetic<float, A> {
+    using Batch = xsimd::batch<float, A>;
+    using Traits = BatchTraits<A>;
+
+    static FASTCCD_INLINE Batch load(const float* p) { return Batch::load_unaligned(p); }
+    /// Half of the lanes from each. Only of more than block_pairs lanes.
+    static FASTCCD_INLINE Batch load_halves(const float* low, const float* high) { return Traits::load_halves(low, high); }
+    static constexpr int transposed_columns = 4;
+    static FASTCCD_INLINE void transpose(const float* const* records, int first, Batch* columns)
+    {
+        Traits::transpose_singles(records, first, columns);
+    }
+};
 
 template <class A>
 struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
@@ -61,15 +75,16 @@ struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
     }
 
     static FASTCCD_INLINE Batch load(const double* p) { return Batch::load_unaligned(p); }
+    static FASTCCD_INLINE Batch load(const float* p) { return Traits::load(p); }
     static FASTCCD_INLINE void store(double* p, Batch x) { x.store_unaligned(p); }
-    using Collector = typename Traits::Collector;
+    template <class Number>
+    using Collector = typename Traits::template Collector<Number>;
     static FASTCCD_INLINE Batch lane_number()
     {
         alignas(64) static constexpr double numbers[8] = {0, 1, 2, 3, 4, 5, 6, 7};
         return Batch::load_unaligned(numbers);
     }
 
-    static FASTCCD_INLINE Batch difference(Batch a, Batch b) { return Traits::difference(a, b); }
     static FASTCCD_INLINE Batch sqrt(Batch a) { return xsimd::sqrt(a); }
     static FASTCCD_INLINE void compress_store(double* p, unsigned bits, Batch x) { Traits::compress_store(p, bits, x); }
     /// Whether there is a Joiner{bits}: for `bits` of two batches, not more than one holds, joiner(low, high) are those lanes, in order,
@@ -79,7 +94,11 @@ struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
     using Joiner = typename T::Joiner;
 
     static constexpr int transposed_columns = Traits::transposed_columns;
-    static FASTCCD_INLINE void transpose(const double* const* records, int first, Batch* columns) { Traits::transpose(records, first, columns); }
+    template <class Number>
+    static FASTCCD_INLINE void transpose(const Number* const* records, int first, Batch* columns)
+    {
+        Traits::transpose(records, first, columns);
+    }
 
     using FirstBox = typename Traits::FirstBox;
     static FASTCCD_INLINE FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return Traits::first_box(box, separation); }

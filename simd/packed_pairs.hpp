@@ -1,5 +1,5 @@
-// Packed pairs as screening reads them, from any layout a PairView can have: in blocks of the native layout, or interleaved. Other layouts are
-// copied to blocks, floats to doubles.
+// Packed pairs as screening reads them, doubles or floats: in place if they lie in blocks of the native layout or interleaved. Strided ones are
+// copied to blocks of doubles.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,19 @@
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
 /// Coordinates of interleaved pairs, each to be asked for once, in order.
-template <class L>
+template <class L, class Number>
 class TransposedPairs {
 public:
-    FASTCCD_INLINE explicit TransposedPairs(const double* first)
+    FASTCCD_INLINE explicit TransposedPairs(const Number* first) : TransposedPairs{first, first + width / 2 * pair_coordinates} {}
+    /// Half of the lanes from each; all of a lane that is alone from `first`.
+    FASTCCD_INLINE TransposedPairs(const Number* first, const Number* second)
     {
-        for (unsigned lane = 0; lane < width; ++lane) pairs_[lane] = first + lane * pair_coordinates;
+        for (unsigned lane = 0; lane < width; ++lane)
+            pairs_[lane] = lane < half ? first + lane * pair_coordinates : second + (lane - half) * pair_coordinates;
     }
-    FASTCCD_INLINE explicit TransposedPairs(const double* const* pairs)
+    FASTCCD_INLINE explicit TransposedPairs(const void* const* pairs)
     {
-        for (unsigned lane = 0; lane < width; ++lane) pairs_[lane] = pairs[lane];
+        for (unsigned lane = 0; lane < width; ++lane) pairs_[lane] = static_cast<const Number*>(pairs[lane]);
     }
     FASTCCD_INLINE L operator()(int c)
     {
@@ -32,11 +35,11 @@ public:
     }
 
 private:
-    static constexpr unsigned width = Lane<L>::width;
+    static constexpr unsigned width = Lane<L>::width, half = (width + 1) / 2;
     static constexpr int columns = Lane<L>::transposed_columns;
     static_assert(pair_coordinates % columns == 0);
 
-    const double* pairs_[width];
+    const Number* pairs_[width];
     L columns_[columns] = {};
 };
 
@@ -50,15 +53,27 @@ struct InBlocks {
     {
         return first + i / block_pairs * block_coordinates + i % block_pairs;
     }
-    template <class L>
-    static FASTCCD_INLINE InRows<L> coordinates(const double* pair)
+    template <class L, class Number>
+    static FASTCCD_INLINE InRows<L, Number> coordinates(const Number* pair)
     {
         return {pair, static_cast<int>(stride)};
     }
-    template <class L>
-    static FASTCCD_INLINE auto collected(const double* blocks, const double* const* pairs)
+    /// Of two batches of half as many pairs, as those of S lanes. Batches in one block follow one another.
+    template <class S>
+    static FASTCCD_INLINE auto in_single(const float* first, const float* second)
     {
-        return typename Lane<L>::Collector{blocks, pairs};
+        return [=](int c) FASTCCD_INLINE_LAMBDA {
+            const std::size_t row = static_cast<std::size_t>(c) * stride;
+            if constexpr (Lane<S>::width > block_pairs)
+                return Lane<S>::load_halves(first + row, second + row);
+            else
+                return Lane<S>::load(first + row);
+        };
+    }
+    template <class L, class Number>
+    static FASTCCD_INLINE auto collected(const Number* blocks, const void* const* pairs)
+    {
+        return typename Lane<L>::template Collector<Number>{blocks, pairs};
     }
 };
 
@@ -72,32 +87,37 @@ struct Interleaved {
     {
         return first + i * pair_coordinates;
     }
-    template <class L>
-    static FASTCCD_INLINE TransposedPairs<L> coordinates(const double* pair)
+    template <class L, class Number>
+    static FASTCCD_INLINE TransposedPairs<L, Number> coordinates(const Number* pair)
     {
-        return TransposedPairs<L>{pair};
+        return TransposedPairs<L, Number>{pair};
     }
-    template <class L>
-    static FASTCCD_INLINE TransposedPairs<L> collected(const double* /*blocks*/, const double* const* pairs)
+    template <class S>
+    static FASTCCD_INLINE TransposedPairs<S, float> in_single(const float* first, const float* second)
     {
-        return TransposedPairs<L>{pairs};
+        return {first, second};
+    }
+    template <class L, class Number>
+    static FASTCCD_INLINE TransposedPairs<L, Number> collected(const Number* /*blocks*/, const void* const* pairs)
+    {
+        return TransposedPairs<L, Number>{pairs};
     }
 };
 
 /// The last of `count` pairs stands for those past it, to a multiple of 8.
-template <class T>
-FASTCCD_INLINE void copy_interleaved(const T* __restrict pairs, std::size_t count, double* __restrict copy)
+template <class Number>
+FASTCCD_INLINE void copy_interleaved(const Number* __restrict pairs, std::size_t count, Number* __restrict copy)
 {
-    for (std::size_t k = 0; k < count * pair_coordinates; ++k) copy[k] = static_cast<double>(pairs[k]);
+    for (std::size_t k = 0; k < count * pair_coordinates; ++k) copy[k] = pairs[k];
     for (std::size_t k = count * pair_coordinates; k < block_coordinates; ++k) copy[k] = copy[k - pair_coordinates];
 }
 
-/// Numbers that follow one another. Without __restrict, which says that nothing stored here changes what is still to
+/// Eight numbers that follow one another. Without __restrict, which says that nothing stored here changes what is still to
 /// be read, compilers move one number at a time.
-template <std::size_t count, class T>
+template <class T>
 FASTCCD_INLINE void copy_row(const T* __restrict data, double* __restrict row)
 {
-    for (std::size_t k = 0; k < count; ++k) row[k] = static_cast<double>(data[k]);
+    for (std::size_t k = 0; k < block_pairs; ++k) row[k] = static_cast<double>(data[k]);
 }
 
 template <class T>
@@ -108,26 +128,28 @@ FASTCCD_INLINE void pack_strided(const PairView& pairs, std::size_t first, std::
         const T* const data = static_cast<const T*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
         double* const row = block + c * block_pairs;
         if (stride == 1 && count == block_pairs)
-            copy_row<block_pairs>(data, row);
+            copy_row(data, row);
         else
             for (std::size_t lane = 0; lane < block_pairs; ++lane)
                 row[lane] = static_cast<double>(data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * stride]);
     }
 }
 
-/// What the stages read of a tile of packed pairs.
-template <class L, class Layout>
+/// What the stages read of a tile of packed pairs: of numbers of this type in this layout, or for strided pairs of either type of doubles in
+/// blocks.
+template <class L, class Layout, class Number>
 class PackedPairs {
 public:
+    static constexpr bool holds_floats = std::is_same_v<Number, float>;
     /// Where the first coordinate of a pair lies, and by its layout the others, and the pairs that follow.
-    using Place = const double*;
+    using Place = const Number*;
 
     FASTCCD_INLINE PackedPairs(const TileRequest& tile, TileScratch& scratch)
-        : pairs_{*tile.source->view}, first_{tile.first}, size_{tile.count}, scratch_{scratch},
+        : pairs_{*tile.source->view}, first_{tile.first}, size_{tile.count}, copied_{copied_pairs(scratch)},
           prefetcher_{*tile.source, tile.first, tile.preferences.into}
     {
-        if (pairs_.layout() != PairView::Layout::strided && pairs_.scalar() == PairView::Scalar::float64)
-            in_place_ = static_cast<const double*>(pairs_.data()) + first_ * pair_coordinates;
+        if (pairs_.layout() != PairView::Layout::strided)
+            in_place_ = static_cast<const Number*>(pairs_.data()) + first_ * pair_coordinates;
     }
 
     [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
@@ -146,7 +168,7 @@ public:
             group_ = in_place_ + i * pair_coordinates;
             return;
         }
-        group_ = scratch_.blocks[0];
+        group_ = copied_.group;
         to_copy_ = i;
         group_end_ = i + count;
         copy_next();
@@ -162,6 +184,12 @@ public:
 
     /// Coordinates, lane by lane, of the pair there and those after it.
     static FASTCCD_INLINE auto coordinates(Place place) { return Layout::template coordinates<L>(place); }
+    /// Of floats: of both parts of a batch of S, without widening them.
+    template <class S>
+    static FASTCCD_INLINE auto coordinates_in_single(const Place (&parts)[2])
+    {
+        return Layout::template in_single<S>(parts[0], parts[1]);
+    }
 
     /// Once for every batch of the group, before it is read or soon after. Batch by batch, although 8 blocks lie between what is
     /// asked for and what is read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family
@@ -178,9 +206,9 @@ public:
     /// Coordinates of the `count` pairs after the last one in [screened].
     FASTCCD_INLINE auto collected(ScreenedQueue& screened, unsigned count) const
     {
-        const double** const pairs = screened.pairs + screened.size;
+        const void** const pairs = screened.pairs + screened.size;
         for (unsigned lane = count; lane < Lane<L>::width; ++lane) pairs[lane] = pairs[count - 1];
-        return Layout::template collected<L>(in_place_ != nullptr ? in_place_ : scratch_.blocks[0], pairs);
+        return Layout::template collected<L>(in_place_ != nullptr ? in_place_ : copied_.group, pairs);
     }
     /// Copies what is left in [screened], less than a batch, if the next group takes the place of this one.
     FASTCCD_INLINE void end_group(ScreenedQueue& screened)
@@ -194,47 +222,47 @@ private:
     FASTCCD_INLINE void keep_waiting(ScreenedQueue& screened)
     {
         for (unsigned k = 0; k < screened.size; ++k) {
-            double* const to = Layout::pair(scratch_.waiting, k);
-            const double* const from = screened.pairs[k];
+            Number* const to = Layout::pair(copied_.waiting, k);
+            const auto* const from = static_cast<Place>(screened.pairs[k]);
             if (from == to) continue;
             for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * Layout::stride] = from[c * Layout::stride];
             screened.pairs[k] = to;
         }
     }
 
+    /// Floats in blocks, always read in place, are not copied.
     FASTCCD_INLINE void copy_next()
     {
-        double* const block = scratch_.blocks[to_copy_ % group_pairs / block_pairs];
-        if (pairs_.scalar() == PairView::Scalar::float64)
-            copy<double>(to_copy_, block);
-        else
-            copy<float>(to_copy_, block);
+        Number* const block = copied_.group + to_copy_ % group_pairs * pair_coordinates;
+        const std::size_t count = size_ - to_copy_ < block_pairs ? size_ - to_copy_ : block_pairs;
+        if constexpr (is_interleaved) {
+            const Place from = in_place_ + to_copy_ * pair_coordinates;
+            prefetcher_.at_pairs(from, block_pairs);
+            copy_interleaved(from, count, block);
+        } else if constexpr (!holds_floats) {
+            const std::size_t first = first_ + to_copy_;
+            prefetcher_.at_strided_block(first);
+            if (pairs_.scalar() == PairView::Scalar::float64)
+                pack_strided<double>(pairs_, first, count, block);
+            else
+                pack_strided<float>(pairs_, first, count, block);
+        }
         to_copy_ += block_pairs;
     }
 
-    template <class T>
-    FASTCCD_INLINE void copy(std::size_t i, double* block)
+    static FASTCCD_INLINE CopiedPairs<Number>& copied_pairs(TileScratch& scratch)
     {
-        const std::size_t first = first_ + i, count = size_ - i < block_pairs ? size_ - i : block_pairs;
-        const bool is_strided = pairs_.layout() == PairView::Layout::strided;
-        const T* const pairs = static_cast<const T*>(pairs_.data()) + (is_strided ? 0 : first * pair_coordinates);
-        if (is_strided)
-            prefetcher_.at_strided_block(first);
+        if constexpr (holds_floats)
+            return scratch.copied_floats;
         else
-            prefetcher_.at_pairs(pairs, block_pairs);
-        if constexpr (is_interleaved)
-            copy_interleaved(pairs, count, block);
-        else if (is_strided)
-            pack_strided<T>(pairs_, first, count, block);
-        else
-            copy_row<block_coordinates>(pairs, block);
+            return scratch.copied;
     }
 
     const PairView& pairs_;
     const std::size_t first_, size_;
-    TileScratch& scratch_;
-    const double* in_place_ = nullptr;  ///< The tile's first pair, if groups are not copied, but perhaps the last one.
-    const double* group_ = nullptr;     ///< The group's first pair.
+    CopiedPairs<Number>& copied_;
+    const Number* in_place_ = nullptr;  ///< The tile's first pair, if groups are not copied, but perhaps the last one.
+    const Number* group_ = nullptr;     ///< The group's first pair.
     bool group_is_in_place_ = false;
     std::size_t to_copy_ = 0, group_end_ = 0;  ///< Of the group: the next pair to copy and the end.
     Prefetcher prefetcher_;

@@ -114,7 +114,7 @@ private:
 
     void screen_sparse_group(std::size_t first, std::size_t count, const Preferences& preferences)
     {
-        if constexpr (Lane<L>::screens_scenes_in_either)
+        if constexpr (Lane<L>::screens_scenes_in_either && !Source::holds_floats)
             if (preferences.scenes_in_double) return screen_group<L>(first, count);
         screen_group<typename Lane<L>::Screening>(first, count);
     }

@@ -20,12 +20,16 @@ FASTCCD_INLINE void run_tile_from(const TileRequest& request, TileScratch& scrat
 template <PairKind kind, class L>
 FASTCCD_INLINE void run_tile_of(const TileRequest& request, TileScratch& scratch)
 {
-    if (request.source->view == nullptr)
-        run_tile_from<kind, L, IndexedPairs<kind, L>>(request, scratch);
-    else if (request.source->view->layout() == PairView::Layout::interleaved)
-        run_tile_from<kind, L, PackedPairs<L, Interleaved>>(request, scratch);
-    else
-        run_tile_from<kind, L, PackedPairs<L, InBlocks>>(request, scratch);
+    const PairView* const pairs = request.source->view;
+    if (pairs == nullptr) return run_tile_from<kind, L, IndexedPairs<kind, L>>(request, scratch);
+    const bool floats = pairs->scalar() == PairView::Scalar::float32;
+    if (pairs->layout() == PairView::Layout::interleaved) {
+        if (floats) return run_tile_from<kind, L, PackedPairs<L, Interleaved, float>>(request, scratch);
+        return run_tile_from<kind, L, PackedPairs<L, Interleaved, double>>(request, scratch);
+    }
+    if (floats && pairs->layout() == PairView::Layout::blocked)
+        return run_tile_from<kind, L, PackedPairs<L, InBlocks, float>>(request, scratch);
+    run_tile_from<kind, L, PackedPairs<L, InBlocks, double>>(request, scratch);
 }
 
 /// See KernelTable::run_tile.

@@ -41,9 +41,13 @@ FASTCCD_INLINE auto with_coordinates(const Parts<S, L, Source>& parts, Use use)
         return use(of_all);
     }
 }
+/// Of floats, in single precision throughout, unless the end moves: the difference of two floats rounded to double and then to single is the one
+/// rounded to single at once, since 53 bits are at least 2 * 24 + 2 (Figueroa, "When is double rounding innocuous?", 1995).
 template <class S, class L, class Source>
 FASTCCD_INLINE RelativeMotion<S> motion_of_parts(const Parts<S, L, Source>& parts, double t_max)
 {
+    if constexpr (Lane<S>::is_single && Source::holds_floats)
+        if (t_max == 1.0) return relative_motion_of<S>(Source::template coordinates_in_single<S>(parts.at), 1.0);
     return with_coordinates(parts, [&](const auto& at) FASTCCD_INLINE_LAMBDA { return relative_motion_in<S, L>(at, t_max); });
 }
 

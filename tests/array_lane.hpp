@@ -82,21 +82,27 @@ struct Lane<Array<T, n>> {
     {
         return each<Values>([&](unsigned) { return static_cast<T>(x); });
     }
-    static Values load(const T* p)
+    template <class Number>
+    static Values load(const Number* p)
     {
-        return each<Values>([&](unsigned i) { return p[i]; });
+        return each<Values>([&](unsigned i) { return T{p[i]}; });
+    }
+    static Values load_halves(const T* low, const T* high)
+    {
+        return each<Values>([&](unsigned i) { return i < n / 2 ? low[i] : high[i - n / 2]; });
     }
     static void store(T* p, Values x)
     {
         for (unsigned i = 0; i < n; ++i) p[i] = x.value[i];
     }
+    template <class Number>
     struct Collector {
-        Collector(const double* /*blocks*/, const double* const* pairs_) : pairs{pairs_} {}
+        Collector(const Number* /*blocks*/, const void* const* pairs_) : pairs{pairs_} {}
         Values operator()(int c) const
         {
-            return each<Values>([&](unsigned i) { return pairs[i][std::size_t(c) * block_pairs]; });
+            return each<Values>([&](unsigned i) { return T{static_cast<const Number*>(pairs[i])[std::size_t(c) * block_pairs]}; });
         }
-        const double* const* pairs;
+        const void* const* pairs;
     };
     static Values lane_number()
     {
@@ -169,9 +175,10 @@ struct Lane<Array<T, n>> {
         unsigned bits;
     };
     static constexpr int transposed_columns = 1;
-    static void transpose(const double* const* records, int first, Values* columns)
+    template <class Number>
+    static void transpose(const Number* const* records, int first, Values* columns)
     {
-        columns[0] = each<Values>([&](unsigned i) { return records[i][first]; });
+        columns[0] = each<Values>([&](unsigned i) { return T{records[i][first]}; });
     }
     using FirstBox = One::FirstBox;
     static FirstBox first_box(const GridBox& box, const std::int16_t* separation) { return One::first_box(box, separation); }

@@ -1,5 +1,11 @@
 // The same bits everywhere: instruction sets x layouts x thread counts, against the certified search.
+#include <algorithm>
+#include <array>
 #include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -132,34 +138,68 @@ TEST(SameBits, Layouts)
     }
 }
 
-TEST(SameBits, FloatLayoutsWidenExactly)
-{
-    for (const auto kind : kinds) {
-        std::vector<oracle::Pair> pairs, more;
-        for (const char* family : {"f32_uniform", "f32_boundary", "f32_simcloth", "f32_degenerate"}) {
-            generate(family, kind, 34, 203, more);
-            pairs.insert(pairs.end(), more.begin(), more.end());
-        }
-        const Answer expected = reference(kind, interleaved(pairs), 1e-9);
-        const std::size_t blocks = (pairs.size() + block_pairs - 1) / block_pairs;
-        std::vector<float> records(pairs.size() * pair_coordinates), blocked(blocks * block_coordinates),
-            columns(records.size());
+/// Pairs as floats, in every layout.
+struct FloatPairs {
+    std::vector<float> records, blocked, columns;
+    std::vector<std::pair<const char*, PairView>> views;
+
+    explicit FloatPairs(const std::vector<oracle::Pair>& pairs)
+        : records(pairs.size() * pair_coordinates), blocked((pairs.size() + block_pairs - 1) / block_pairs * block_coordinates),
+          columns(records.size())
+    {
         std::array<const float*, pair_coordinates> column{};
         for (std::size_t i = 0; i < pairs.size(); ++i)
             for (std::size_t c = 0; c < pair_coordinates; ++c) {
-                const float value = static_cast<float>(pairs[i][c / 3][c % 3]);
+                const auto value = static_cast<float>(pairs[i][c / 3][c % 3]);
                 records[i * pair_coordinates + c] = value;
                 blocked[(i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs] = value;
                 columns[c * pairs.size() + i] = value;
                 column[c] = &columns[c * pairs.size()];
             }
-        for (const Isa isa : isas_to_test()) {
-            Options options;
-            options.isa = isa;
-            expect_same(expected, answer(kind, PairView::interleaved(records.data(), pairs.size()), options), "float interleaved");
-            expect_same(expected, answer(kind, PairView::blocked(blocked.data(), pairs.size()), options), "float blocked");
-            expect_same(expected, answer(kind, PairView::strided(column, 1, pairs.size()), options), "float strided");
+        views = {{"float interleaved", PairView::interleaved(records.data(), pairs.size())},
+                 {"float blocked", PairView::blocked(blocked.data(), pairs.size())},
+                 {"float strided", PairView::strided(column, 1, pairs.size())}};
+    }
+};
+
+TEST(SameBits, FloatLayoutsWidenExactly)
+{
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs, more;
+        for (const char* family : {"f32_uniform", "f32_boundary", "f32_simcloth", "f32_degenerate", "f32_extreme_scale", "f32_mixed_exponent"}) {
+            generate(family, kind, 34, 203, more);
+            pairs.insert(pairs.end(), more.begin(), more.end());
         }
+        // Differences of floats that single precision does not hold, that are below its normal range or above all of it, and what is no number.
+        const std::size_t finite = pairs.size();
+        for (std::size_t i = 0; i < finite; i += 7)
+            for (const double factor : {0x1p-149, 0x1p-126, 0x1p126}) {
+                oracle::Pair pair = pairs[i];
+                for (auto& point : pair)
+                    for (double& x : point) x = static_cast<float>(std::clamp(factor * x, -0x1p127, 0x1p127));
+                pairs.push_back(pair);
+            }
+        for (std::size_t i = 0; i < finite; i += 101) {
+            oracle::Pair pair = pairs[i];
+            pair[i % 8][i % 3] = i % 2 == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+            pairs.push_back(pair);
+        }
+        const FloatPairs floats{pairs};
+        for (const double t_max : {1.0, 0.37})
+            for (const double separation : {0.0, 1e-2}) {
+                Options options;
+                options.t_max = t_max;
+                options.minimum_separation = separation;
+                options.reference = true;
+                const Answer expected = answer(kind, interleaved(pairs), options);
+                options.reference = false;
+                for (const Isa isa : isas_to_test()) {
+                    options.isa = isa;
+                    for (const auto& [layout, view] : floats.views)
+                        expect_same(expected, answer(kind, view, options),
+                                    std::string(layout) + ", " + name(isa) + ", t_max " + std::to_string(t_max) + ", separation " + std::to_string(separation));
+                }
+            }
     }
 }
 

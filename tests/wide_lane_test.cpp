@@ -30,10 +30,16 @@ std::size_t expect_decided_as_searched(oracle::Kind kind, const std::vector<orac
     for (std::size_t c = 0; c < pair_coordinates; ++c) columns[c] = &pairs[0][c / 3][c % 3];
     std::vector<PairView> views{buffer.view(), interleaved(pairs),
                                 PairView::strided(columns, static_cast<std::ptrdiff_t>(pair_coordinates), pairs.size())};
-    std::vector<float> floats;
-    for (const oracle::Pair& pair : pairs)
-        for (std::size_t c = 0; c < pair_coordinates; ++c) floats.push_back(static_cast<float>(pair[c / 3][c % 3]));
-    if (family.starts_with("f32")) views.push_back(PairView::interleaved(floats.data(), pairs.size()));
+    std::vector<float> floats, float_blocks(buffer.block_count() * block_coordinates);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        for (std::size_t c = 0; c < pair_coordinates; ++c) {
+            floats.push_back(static_cast<float>(pairs[i][c / 3][c % 3]));
+            float_blocks[i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs] = floats.back();
+        }
+    if (family.starts_with("f32")) {
+        views.push_back(PairView::interleaved(floats.data(), pairs.size()));
+        views.push_back(PairView::blocked(float_blocks.data(), pairs.size()));
+    }
     for (const PairView& view : views) {
         const PairSource source{&view, {}, view.size()};
         // Either way to go about it, whichever this machine takes.

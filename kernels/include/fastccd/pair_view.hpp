@@ -21,7 +21,7 @@ class PairView {
 public:
     enum class Layout : std::uint8_t {
         blocked,      ///< Blocks [24 coordinates][8 lanes]: the native, fastest layout.
-        interleaved,  ///< Records of 24 coordinates, (N,8,3) in numpy's terms; doubles are nearly as fast.
+        interleaved,  ///< Records of 24 coordinates, (N,8,3) in numpy's terms; nearly as fast.
         strided,      ///< 24 arrays, element i of an array at i * stride.
     };
     enum class Scalar : std::uint8_t { float64, float32 };
