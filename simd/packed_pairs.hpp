@@ -1,5 +1,5 @@
 // Packed pairs as screening reads them, doubles or floats: in place if they lie in blocks of the native layout or interleaved. Strided ones are
-// copied to blocks of doubles.
+// copied to blocks.
 #pragma once
 
 #include <cstddef>
@@ -114,29 +114,33 @@ FASTCCD_INLINE void copy_interleaved(const Number* __restrict pairs, std::size_t
 
 /// Eight numbers that follow one another. Without __restrict, which says that nothing stored here changes what is still to
 /// be read, compilers move one number at a time.
-template <class T>
-FASTCCD_INLINE void copy_row(const T* __restrict data, double* __restrict row)
+template <class Number>
+FASTCCD_INLINE void copy_row(const Number* __restrict data, Number* __restrict row)
 {
-    for (std::size_t k = 0; k < block_pairs; ++k) row[k] = static_cast<double>(data[k]);
+    for (std::size_t k = 0; k < block_pairs; ++k) row[k] = data[k];
 }
 
-template <class T>
-FASTCCD_INLINE void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, double* block)
+/// Of any stride, or fewer than 8 pairs, of which the last one stands for those past it. Static and never inlined, to leave screening its registers.
+template <class Number>
+[[maybe_unused]] __attribute__((noinline)) static void pack_one_by_one(const PairView& pairs, std::size_t first, std::size_t count, Number* block)
 {
     const std::ptrdiff_t stride = pairs.stride();
     for (std::size_t c = 0; c < pair_coordinates; ++c) {
-        const T* const data = static_cast<const T*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
-        double* const row = block + c * block_pairs;
-        if (stride == 1 && count == block_pairs)
-            copy_row(data, row);
-        else
-            for (std::size_t lane = 0; lane < block_pairs; ++lane)
-                row[lane] = static_cast<double>(data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * stride]);
+        const Number* const data = static_cast<const Number*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
+        for (std::size_t lane = 0; lane < block_pairs; ++lane)
+            block[c * block_pairs + lane] = data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * stride];
     }
 }
 
-/// What the stages read of a tile of packed pairs: of numbers of this type in this layout, or for strided pairs of either type of doubles in
-/// blocks.
+template <class Number>
+FASTCCD_INLINE void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, Number* block)
+{
+    if (pairs.stride() != 1 || count != block_pairs) return pack_one_by_one(pairs, first, count, block);
+#pragma GCC unroll 24
+    for (std::size_t c = 0; c < pair_coordinates; ++c) copy_row(static_cast<const Number*>(pairs.data(c)) + first, block + c * block_pairs);
+}
+
+/// What the stages read of a tile of packed pairs, of numbers of this type: in this layout, or strided, for which it is InBlocks.
 template <class L, class Layout, class Number>
 class PackedPairs {
 public:
@@ -230,7 +234,6 @@ private:
         }
     }
 
-    /// Floats in blocks, always read in place, are not copied.
     FASTCCD_INLINE void copy_next()
     {
         Number* const block = copied_.group + to_copy_ % group_pairs * pair_coordinates;
@@ -239,13 +242,9 @@ private:
             const Place from = in_place_ + to_copy_ * pair_coordinates;
             prefetcher_.at_pairs(from, block_pairs);
             copy_interleaved(from, count, block);
-        } else if constexpr (!holds_floats) {
-            const std::size_t first = first_ + to_copy_;
-            prefetcher_.at_strided_block(first);
-            if (pairs_.scalar() == PairView::Scalar::float64)
-                pack_strided<double>(pairs_, first, count, block);
-            else
-                pack_strided<float>(pairs_, first, count, block);
+        } else {
+            prefetcher_.at_strided_block(first_ + to_copy_);
+            pack_strided(pairs_, first_ + to_copy_, count, block);
         }
         to_copy_ += block_pairs;
     }

@@ -17,19 +17,24 @@ FASTCCD_INLINE void run_tile_from(const TileRequest& request, TileScratch& scrat
         Pipeline<kind, L, Source>::run_tile(request, scratch);
 }
 
+template <PairKind kind, class L, class Number>
+FASTCCD_INLINE void run_packed_tile(const TileRequest& request, TileScratch& scratch)
+{
+    if (request.source->view->layout() == PairView::Layout::interleaved)
+        run_tile_from<kind, L, PackedPairs<L, Interleaved, Number>>(request, scratch);
+    else
+        run_tile_from<kind, L, PackedPairs<L, InBlocks, Number>>(request, scratch);
+}
+
 template <PairKind kind, class L>
 FASTCCD_INLINE void run_tile_of(const TileRequest& request, TileScratch& scratch)
 {
     const PairView* const pairs = request.source->view;
     if (pairs == nullptr) return run_tile_from<kind, L, IndexedPairs<kind, L>>(request, scratch);
-    const bool floats = pairs->scalar() == PairView::Scalar::float32;
-    if (pairs->layout() == PairView::Layout::interleaved) {
-        if (floats) return run_tile_from<kind, L, PackedPairs<L, Interleaved, float>>(request, scratch);
-        return run_tile_from<kind, L, PackedPairs<L, Interleaved, double>>(request, scratch);
-    }
-    if (floats && pairs->layout() == PairView::Layout::blocked)
-        return run_tile_from<kind, L, PackedPairs<L, InBlocks, float>>(request, scratch);
-    run_tile_from<kind, L, PackedPairs<L, InBlocks, double>>(request, scratch);
+    if (pairs->scalar() == PairView::Scalar::float64)
+        run_packed_tile<kind, L, double>(request, scratch);
+    else
+        run_packed_tile<kind, L, float>(request, scratch);
 }
 
 /// See KernelTable::run_tile.
