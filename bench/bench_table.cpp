@@ -91,8 +91,8 @@ bool in_default_selection(const Case& c)
     const bool native = c.scalar == PairView::Scalar::float64 &&
                         (c.layout == Layout::blocked || c.layout == Layout::indexed);
     if (!native) {
-        // Of the other layouts, (N,8,3) is what numpy has.
-        const bool is_common = c.layout == Layout::interleaved && c.scalar == PairView::Scalar::float64;
+        // (N,8,3) is what numpy has, floats what games have.
+        const bool is_common = c.layout != Layout::strided;
         return (c.isa == best_isa() || is_common) && c.threads == 1 && c.question == Question::dense &&
                (c.data == "random" || c.data == layout_scene());
     }
