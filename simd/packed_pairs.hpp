@@ -77,6 +77,10 @@ struct InBlocks {
     }
 };
 
+/// Copies in blocks, of pairs that lie anywhere. A layout of its own: pairs that are read in place took up to a tenth longer where the code was also
+/// there to copy them (bench/LIMITS.md).
+struct CopiedToBlocks : InBlocks {};
+
 /// 24 coordinates a pair, one pair after the other. They are transposed in registers each time they are read: copied to blocks first, a pair
 /// took 3 ns longer with AVX2 and AVX-512, of which a third is storing it (bench/LIMITS.md).
 struct Interleaved {
@@ -120,11 +124,17 @@ FASTCCD_INLINE void copy_row(const Number* __restrict data, Number* __restrict r
     for (std::size_t k = 0; k < block_pairs; ++k) row[k] = data[k];
 }
 
-/// Of any stride, or fewer than 8 pairs, of which the last one stands for those past it. Static and never inlined, to leave screening its registers.
+/// Eight pairs to a block, or fewer, of which the last one stands for those past it. Static and never inlined, so that loops that screen keep
+/// their registers: inlined, random floats took 40 % longer with AVX-512 (bench/LIMITS.md).
 template <class Number>
-[[maybe_unused]] __attribute__((noinline)) static void pack_one_by_one(const PairView& pairs, std::size_t first, std::size_t count, Number* block)
+[[maybe_unused]] __attribute__((noinline)) static void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, Number* block)
 {
     const std::ptrdiff_t stride = pairs.stride();
+    if (stride == 1 && count == block_pairs) {
+#pragma GCC unroll 24
+        for (std::size_t c = 0; c < pair_coordinates; ++c) copy_row(static_cast<const Number*>(pairs.data(c)) + first, block + c * block_pairs);
+        return;
+    }
     for (std::size_t c = 0; c < pair_coordinates; ++c) {
         const Number* const data = static_cast<const Number*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
         for (std::size_t lane = 0; lane < block_pairs; ++lane)
@@ -132,15 +142,7 @@ template <class Number>
     }
 }
 
-template <class Number>
-FASTCCD_INLINE void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, Number* block)
-{
-    if (pairs.stride() != 1 || count != block_pairs) return pack_one_by_one(pairs, first, count, block);
-#pragma GCC unroll 24
-    for (std::size_t c = 0; c < pair_coordinates; ++c) copy_row(static_cast<const Number*>(pairs.data(c)) + first, block + c * block_pairs);
-}
-
-/// What the stages read of a tile of packed pairs, of numbers of this type: in this layout, or strided, for which it is InBlocks.
+/// What the stages read of a tile of packed pairs, of numbers of this type in this layout; strided ones in CopiedToBlocks.
 template <class L, class Layout, class Number>
 class PackedPairs {
 public:
@@ -152,8 +154,7 @@ public:
         : pairs_{*tile.source->view}, first_{tile.first}, size_{tile.count}, copied_{copied_pairs(scratch)},
           prefetcher_{*tile.source, tile.first, tile.preferences.into}
     {
-        if (pairs_.layout() != PairView::Layout::strided)
-            in_place_ = static_cast<const Number*>(pairs_.data()) + first_ * pair_coordinates;
+        if constexpr (!is_copied) in_place_ = static_cast<const Number*>(pairs_.data()) + first_ * pair_coordinates;
     }
 
     [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
@@ -167,21 +168,24 @@ public:
     FASTCCD_INLINE void begin_group(std::size_t i)
     {
         const std::size_t count = size_ - i < group_pairs ? size_ - i : group_pairs;
-        group_is_in_place_ = in_place_ != nullptr && (!is_interleaved || count % block_pairs == 0);
+        if constexpr (is_interleaved) group_is_in_place_ = count % block_pairs == 0;
         if (group_is_in_place_) {
             group_ = in_place_ + i * pair_coordinates;
             return;
         }
-        group_ = copied_.group;
-        to_copy_ = i;
-        group_end_ = i + count;
-        copy_next();
+        if constexpr (is_copied || is_interleaved) {
+            group_ = copied_.group;
+            to_copy_ = i;
+            group_end_ = i + count;
+            copy_next();
+        }
     }
     /// Before the 8 pairs from `i` on, of the group, are read. Those after them are copied then, so that memory is asked at an even rate, and
     /// nothing is read right after it was written: with a whole group copied first, strided pairs took a sixth longer (bench/LIMITS.md).
     FASTCCD_INLINE void begin_block(std::size_t /*i*/)
     {
-        if (to_copy_ < group_end_) copy_next();
+        if constexpr (is_copied || is_interleaved)
+            if (to_copy_ < group_end_) copy_next();
     }
     /// Of a pair of the group.
     [[nodiscard]] FASTCCD_INLINE Place place(std::size_t i) const { return Layout::pair(group_, i % group_pairs); }
@@ -200,7 +204,8 @@ public:
     /// 25 (bench/LIMITS.md).
     FASTCCD_INLINE void ask_ahead(Place batch)
     {
-        if (group_is_in_place_) prefetcher_.at_pairs(batch, Lane<L>::width);
+        if constexpr (!is_copied)
+            if (group_is_in_place_) prefetcher_.at_pairs(batch, Lane<L>::width);
     }
     /// Before a batch of a later stage.
     FASTCCD_INLINE void meanwhile() { prefetcher_.meanwhile(); }
@@ -212,7 +217,7 @@ public:
     {
         const void** const pairs = screened.pairs + screened.size;
         for (unsigned lane = count; lane < Lane<L>::width; ++lane) pairs[lane] = pairs[count - 1];
-        return Layout::template collected<L>(in_place_ != nullptr ? in_place_ : copied_.group, pairs);
+        return Layout::template collected<L>(is_copied ? copied_.group : in_place_, pairs);
     }
     /// Copies what is left in [screened], less than a batch, if the next group takes the place of this one.
     FASTCCD_INLINE void end_group(ScreenedQueue& screened)
@@ -221,7 +226,7 @@ public:
     }
 
 private:
-    static constexpr bool is_interleaved = std::is_same_v<Layout, Interleaved>;
+    static constexpr bool is_interleaved = std::is_same_v<Layout, Interleaved>, is_copied = std::is_same_v<Layout, CopiedToBlocks>;
 
     FASTCCD_INLINE void keep_waiting(ScreenedQueue& screened)
     {
@@ -262,7 +267,7 @@ private:
     CopiedPairs<Number>& copied_;
     const Number* in_place_ = nullptr;  ///< The tile's first pair, if groups are not copied, but perhaps the last one.
     const Number* group_ = nullptr;     ///< The group's first pair.
-    bool group_is_in_place_ = false;
+    bool group_is_in_place_ = !is_copied;
     std::size_t to_copy_ = 0, group_end_ = 0;  ///< Of the group: the next pair to copy and the end.
     Prefetcher prefetcher_;
 };

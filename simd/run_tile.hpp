@@ -20,10 +20,11 @@ FASTCCD_INLINE void run_tile_from(const TileRequest& request, TileScratch& scrat
 template <PairKind kind, class L, class Number>
 FASTCCD_INLINE void run_packed_tile(const TileRequest& request, TileScratch& scratch)
 {
-    if (request.source->view->layout() == PairView::Layout::interleaved)
-        run_tile_from<kind, L, PackedPairs<L, Interleaved, Number>>(request, scratch);
-    else
-        run_tile_from<kind, L, PackedPairs<L, InBlocks, Number>>(request, scratch);
+    switch (request.source->view->layout()) {
+        case PairView::Layout::blocked: return run_tile_from<kind, L, PackedPairs<L, InBlocks, Number>>(request, scratch);
+        case PairView::Layout::interleaved: return run_tile_from<kind, L, PackedPairs<L, Interleaved, Number>>(request, scratch);
+        case PairView::Layout::strided: return run_tile_from<kind, L, PackedPairs<L, CopiedToBlocks, Number>>(request, scratch);
+    }
 }
 
 template <PairKind kind, class L>

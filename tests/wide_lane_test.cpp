@@ -23,10 +23,11 @@ template <PairKind kind, class Number>
 void run_tile_of(const TileRequest& request, TileScratch& scratch)
 {
     using namespace FASTCCD_KERNEL_NAMESPACE;
-    if (request.source->view->layout() == PairView::Layout::interleaved)
-        Pipeline<kind, Lanes, PackedPairs<Lanes, Interleaved, Number>>::run_tile(request, scratch);
-    else
-        Pipeline<kind, Lanes, PackedPairs<Lanes, InBlocks, Number>>::run_tile(request, scratch);
+    switch (request.source->view->layout()) {
+        case PairView::Layout::blocked: return Pipeline<kind, Lanes, PackedPairs<Lanes, InBlocks, Number>>::run_tile(request, scratch);
+        case PairView::Layout::interleaved: return Pipeline<kind, Lanes, PackedPairs<Lanes, Interleaved, Number>>::run_tile(request, scratch);
+        case PairView::Layout::strided: return Pipeline<kind, Lanes, PackedPairs<Lanes, CopiedToBlocks, Number>>::run_tile(request, scratch);
+    }
 }
 
 /// What run_tile.hpp does of packed pairs, without a minimum separation. All of that would take twice as long to compile.

@@ -78,7 +78,7 @@ finish_beside() {
 
 # ThreadSanitizer on the scheduler, with a stand-in for oneTBB (tests/thread_sanitizer/tbb/workers.h says why). By g++, because clang 14
 # leaves out loads and stores of 32 and 64 bytes, and most of those of the wide kernels are such. Without AVX-512, which takes minutes more to
-# compile: all lanes are one text, so AVX2's share with other threads what its would.
+# compile: all lanes are one text, so those of AVX2 share with other threads what its would.
 test_races() {
   local races=$build-races fixed_addresses=(setarch --addr-no-randomize)
   CXX=g++ build=$races configure_and_build -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DFASTCCD_SANITIZE=thread -DFASTCCD_AVX512=OFF \
