@@ -63,12 +63,13 @@ inline constexpr std::size_t group_pairs = 64;
 /// A batch may wait in [screened] when the next group is listed, eight at a time.
 static_assert(group_pairs + most_lanes + 8 <= ScreenedQueue::capacity && tile_pairs % group_pairs == 0);
 
-/// Copies of packed pairs: those of a group, in blocks of the native layout or interleaved, where they cannot be read in place ...
+/// Copies of packed pairs that cannot be read in place.
 template <class Number>
 struct CopiedPairs {
+    /// Strided pairs of a group, in blocks of the native layout.
     alignas(64) Number group[group_pairs / block_pairs * block_coordinates];
-    /// ... and a block of the pairs that wait in `screened` while the next group takes their place.
-    alignas(64) Number waiting[block_coordinates];
+    /// Strided pairs that wait in `screened` while the next group takes their place; or the interleaved ones past the last whole block of a tile.
+    alignas(64) Number block[block_coordinates];
 };
 
 /// What refinement works on, next to the rows of `slow`.

@@ -78,7 +78,7 @@ private:
 template <PairKind kind, class L>
 class IndexedPairs {
 public:
-    static constexpr bool holds_floats = false;
+    static constexpr bool holds_floats = false, asks_ahead = false;
     /// Where the vertex record of x0 stands in a block of records, [4][8].
     using Place = const double* const*;
 
@@ -103,7 +103,6 @@ public:
     [[nodiscard]] FASTCCD_INLINE Place place(std::size_t i) const { return &block_of(i)[0][i % block_pairs]; }
     static FASTCCD_INLINE TransposedVertices<L> coordinates(Place place) { return TransposedVertices<L>{place}; }
 
-    FASTCCD_INLINE void ask_ahead(Place /*batch*/) {}
     FASTCCD_INLINE void meanwhile() {}
 
     FASTCCD_INLINE void keep_place(ScreenedQueue&, unsigned /*k*/, std::size_t /*i*/) {}

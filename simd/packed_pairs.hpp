@@ -1,5 +1,4 @@
-// Packed pairs as screening reads them, doubles or floats: in place if they lie in blocks of the native layout or interleaved. Strided ones are
-// copied to blocks.
+// Packed pairs as screening reads them in place, doubles or floats: in blocks of the native layout or interleaved. Strided ones: strided_pairs.hpp.
 #pragma once
 
 #include <cstddef>
@@ -47,6 +46,7 @@ private:
 struct InBlocks {
     /// From a coordinate of a pair to the next one.
     static constexpr std::size_t stride = block_pairs;
+    static constexpr bool in_whole_blocks = true;
 
     template <class Number>
     static FASTCCD_INLINE Number* pair(Number* first, std::size_t i)
@@ -77,14 +77,10 @@ struct InBlocks {
     }
 };
 
-/// Copies in blocks, of pairs that lie anywhere. A layout of its own: pairs that are read in place took up to a tenth longer where the code was also
-/// there to copy them (bench/LIMITS.md).
-struct CopiedToBlocks : InBlocks {};
-
 /// 24 coordinates a pair, one pair after the other. They are transposed in registers each time they are read: copied to blocks first, a pair
 /// took 3 ns longer with AVX2 and AVX-512, of which a third is storing it (bench/LIMITS.md).
 struct Interleaved {
-    static constexpr std::size_t stride = 1;
+    static constexpr bool in_whole_blocks = false;
 
     template <class Number>
     static FASTCCD_INLINE Number* pair(Number* first, std::size_t i)
@@ -108,87 +104,16 @@ struct Interleaved {
     }
 };
 
-/// The last of `count` pairs stands for those past it, to a multiple of 8.
-template <class Number>
-FASTCCD_INLINE void copy_interleaved(const Number* __restrict pairs, std::size_t count, Number* __restrict copy)
-{
-    for (std::size_t k = 0; k < count * pair_coordinates; ++k) copy[k] = pairs[k];
-    for (std::size_t k = count * pair_coordinates; k < block_coordinates; ++k) copy[k] = copy[k - pair_coordinates];
-}
-
-/// Eight numbers that follow one another. Without __restrict, which says that nothing stored here changes what is still to
-/// be read, compilers move one number at a time.
-template <class Number>
-FASTCCD_INLINE void copy_row(const Number* __restrict data, Number* __restrict row)
-{
-    for (std::size_t k = 0; k < block_pairs; ++k) row[k] = data[k];
-}
-
-/// Eight pairs to a block, or fewer, of which the last one stands for those past it. Static and never inlined, so that loops that screen keep
-/// their registers: inlined, random floats took 40 % longer with AVX-512 (bench/LIMITS.md).
-template <class Number>
-[[maybe_unused]] __attribute__((noinline)) static void pack_strided(const PairView& pairs, std::size_t first, std::size_t count, Number* block)
-{
-    const std::ptrdiff_t stride = pairs.stride();
-    if (stride == 1 && count == block_pairs) {
-#pragma GCC unroll 24
-        for (std::size_t c = 0; c < pair_coordinates; ++c) copy_row(static_cast<const Number*>(pairs.data(c)) + first, block + c * block_pairs);
-        return;
-    }
-    for (std::size_t c = 0; c < pair_coordinates; ++c) {
-        const Number* const data = static_cast<const Number*>(pairs.data(c)) + static_cast<std::ptrdiff_t>(first) * stride;
-        for (std::size_t lane = 0; lane < block_pairs; ++lane)
-            block[c * block_pairs + lane] = data[static_cast<std::ptrdiff_t>(lane < count ? lane : count - 1) * stride];
-    }
-}
-
-/// What the stages read of a tile of packed pairs, of numbers of this type in this layout; strided ones in CopiedToBlocks.
+/// How stages read pairs of numbers of this type in this layout, wherever their first coordinate lies.
 template <class L, class Layout, class Number>
-class PackedPairs {
-public:
+struct PairReader {
     static constexpr bool holds_floats = std::is_same_v<Number, float>;
-    /// Where the first coordinate of a pair lies, and by its layout the others, and the pairs that follow.
+    /// Where the first coordinate of a pair lies, and by its layout the others, and the pairs that follow in a block of 8.
     using Place = const Number*;
 
-    FASTCCD_INLINE PackedPairs(const TileRequest& tile, TileScratch& scratch)
-        : pairs_{*tile.source->view}, first_{tile.first}, size_{tile.count}, copied_{copied_pairs(scratch)},
-          prefetcher_{*tile.source, tile.first, tile.preferences.into}
-    {
-        if constexpr (!is_copied) in_place_ = static_cast<const Number*>(pairs_.data()) + first_ * pair_coordinates;
-    }
-
-    [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
-
-    /// Number in the tile of pair `i` of this source, and of the pairs from `i` on, in the group begun last.
-    [[nodiscard]] FASTCCD_INLINE std::size_t number(std::size_t i) const { return i; }
-    [[nodiscard]] FASTCCD_INLINE L numbers(std::size_t i) const { return broadcast<L>(static_cast<double>(i)) + Lane<L>::lane_number(); }
-
-    /// Before pairs from `i` on, a multiple of group_pairs. The last pair stands for those past the end, to a multiple of 8. Groups are to be
-    /// begun in order.
-    FASTCCD_INLINE void begin_group(std::size_t i)
-    {
-        const std::size_t count = size_ - i < group_pairs ? size_ - i : group_pairs;
-        if constexpr (is_interleaved) group_is_in_place_ = count % block_pairs == 0;
-        if (group_is_in_place_) {
-            group_ = in_place_ + i * pair_coordinates;
-            return;
-        }
-        if constexpr (is_copied || is_interleaved) {
-            group_ = copied_.group;
-            to_copy_ = i;
-            group_end_ = i + count;
-            copy_next();
-        }
-    }
-    /// Before the 8 pairs from `i` on, of the group, are read. Those after them are copied then, so that memory is asked at an even rate, and
-    /// nothing is read right after it was written: with a whole group copied first, strided pairs took a sixth longer (bench/LIMITS.md).
-    FASTCCD_INLINE void begin_block(std::size_t /*i*/)
-    {
-        if constexpr (is_copied || is_interleaved)
-            if (to_copy_ < group_end_) copy_next();
-    }
-    /// Of a pair of the group.
-    [[nodiscard]] FASTCCD_INLINE Place place(std::size_t i) const { return Layout::pair(group_, i % group_pairs); }
+    /// Number in the tile of pair `i`.
+    [[nodiscard]] static FASTCCD_INLINE std::size_t number(std::size_t i) { return i; }
+    [[nodiscard]] static FASTCCD_INLINE L numbers(std::size_t i) { return broadcast<L>(static_cast<double>(i)) + Lane<L>::lane_number(); }
 
     /// Coordinates, lane by lane, of the pair there and those after it.
     static FASTCCD_INLINE auto coordinates(Place place) { return Layout::template coordinates<L>(place); }
@@ -198,77 +123,76 @@ public:
     {
         return Layout::template in_single<S>(parts[0], parts[1]);
     }
-
-    /// Once for every batch of the group, before it is read or soon after. Batch by batch, although 8 blocks lie between what is
-    /// asked for and what is read: with four lanes, at a block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family
-    /// 25 (bench/LIMITS.md).
-    FASTCCD_INLINE void ask_ahead(Place batch)
-    {
-        if constexpr (!is_copied)
-            if (group_is_in_place_) prefetcher_.at_pairs(batch, Lane<L>::width);
-    }
-    /// Before a batch of a later stage.
-    FASTCCD_INLINE void meanwhile() { prefetcher_.meanwhile(); }
-
-    /// For the pair at `k` in [screened], which is pair `i` of the group.
-    FASTCCD_INLINE void keep_place(ScreenedQueue& screened, unsigned k, std::size_t i) const { screened.pairs[k] = place(i); }
-    /// Coordinates of the `count` pairs after the last one in [screened].
-    FASTCCD_INLINE auto collected(ScreenedQueue& screened, unsigned count) const
+    /// Coordinates of the `count` pairs after the last one in [screened], none farther from `near` than a tile.
+    static FASTCCD_INLINE auto collected_near(Place near, ScreenedQueue& screened, unsigned count)
     {
         const void** const pairs = screened.pairs + screened.size;
         for (unsigned lane = count; lane < Lane<L>::width; ++lane) pairs[lane] = pairs[count - 1];
-        return Layout::template collected<L>(is_copied ? copied_.group : in_place_, pairs);
+        return Layout::template collected<L>(near, pairs);
     }
-    /// Copies what is left in [screened], less than a batch, if the next group takes the place of this one.
-    FASTCCD_INLINE void end_group(ScreenedQueue& screened)
+};
+
+template <class Number>
+FASTCCD_INLINE CopiedPairs<Number>& copied_pairs(TileScratch& scratch)
+{
+    if constexpr (std::is_same_v<Number, float>)
+        return scratch.copied_floats;
+    else
+        return scratch.copied;
+}
+
+/// The pairs that a tile of interleaved pairs has past its last whole block of 8, to be read as one: the last of them stands for those missing.
+template <class Number>
+FASTCCD_INLINE void copy_rest(const Number* __restrict pairs, std::size_t count, Number* __restrict block)
+{
+    for (std::size_t k = 0; k < count * pair_coordinates; ++k) block[k] = pairs[k];
+    for (std::size_t k = count * pair_coordinates; k < block_coordinates; ++k) block[k] = block[k - pair_coordinates];
+}
+
+/// What the stages read of a tile of packed pairs, where they lie. Buffers in blocks are filled up to a whole one; of interleaved pairs those past
+/// the last whole block of the tile are copied.
+template <class L, class Layout, class Number>
+class PackedPairs : public PairReader<L, Layout, Number> {
+public:
+    using typename PairReader<L, Layout, Number>::Place;
+    static constexpr bool asks_ahead = true;
+
+    FASTCCD_INLINE PackedPairs(const TileRequest& tile, TileScratch& scratch)
+        : first_{static_cast<Place>(tile.source->view->data()) + tile.first * pair_coordinates}, size_{tile.count},
+          rest_{copied_pairs<Number>(scratch).block}, prefetcher_{*tile.source, tile.first, tile.preferences.into}
     {
-        if (!group_is_in_place_) keep_waiting(screened);
+        if constexpr (!Layout::in_whole_blocks)
+            if (whole_blocks() < size_) copy_rest(Layout::pair(first_, whole_blocks()), size_ - whole_blocks(), rest_);
     }
+
+    [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
+
+    FASTCCD_INLINE void begin_group(std::size_t /*i*/) {}
+    FASTCCD_INLINE void begin_block(std::size_t /*i*/) {}
+    [[nodiscard]] FASTCCD_INLINE Place place(std::size_t i) const
+    {
+        if constexpr (!Layout::in_whole_blocks)
+            if (i >= whole_blocks()) return Layout::pair(rest_, i - whole_blocks());
+        return Layout::pair(first_, i);
+    }
+
+    /// About when a batch of L is read. Batch by batch, although 8 blocks lie between what is asked for and what is read: with four lanes, at a
+    /// block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/LIMITS.md). For pairs that were copied, wherever they were, no more is asked for than is left of the source.
+    FASTCCD_INLINE void ask_ahead(Place batch) { prefetcher_.at_pairs(batch, Lane<L>::width); }
+    /// Before a batch of a later stage.
+    FASTCCD_INLINE void meanwhile() { prefetcher_.meanwhile(); }
+
+    /// For the pair at `k` in [screened], which is pair `i`.
+    FASTCCD_INLINE void keep_place(ScreenedQueue& screened, unsigned k, std::size_t i) const { screened.pairs[k] = place(i); }
+    FASTCCD_INLINE auto collected(ScreenedQueue& screened, unsigned count) const { return this->collected_near(first_, screened, count); }
+    FASTCCD_INLINE void end_group(ScreenedQueue&) {}
 
 private:
-    static constexpr bool is_interleaved = std::is_same_v<Layout, Interleaved>, is_copied = std::is_same_v<Layout, CopiedToBlocks>;
+    [[nodiscard]] FASTCCD_INLINE std::size_t whole_blocks() const { return size_ / block_pairs * block_pairs; }
 
-    FASTCCD_INLINE void keep_waiting(ScreenedQueue& screened)
-    {
-        for (unsigned k = 0; k < screened.size; ++k) {
-            Number* const to = Layout::pair(copied_.waiting, k);
-            const auto* const from = static_cast<Place>(screened.pairs[k]);
-            if (from == to) continue;
-            for (std::size_t c = 0; c < pair_coordinates; ++c) to[c * Layout::stride] = from[c * Layout::stride];
-            screened.pairs[k] = to;
-        }
-    }
-
-    FASTCCD_INLINE void copy_next()
-    {
-        Number* const block = copied_.group + to_copy_ % group_pairs * pair_coordinates;
-        const std::size_t count = size_ - to_copy_ < block_pairs ? size_ - to_copy_ : block_pairs;
-        if constexpr (is_interleaved) {
-            const Place from = in_place_ + to_copy_ * pair_coordinates;
-            prefetcher_.at_pairs(from, block_pairs);
-            copy_interleaved(from, count, block);
-        } else {
-            prefetcher_.at_strided_block(first_ + to_copy_);
-            pack_strided(pairs_, first_ + to_copy_, count, block);
-        }
-        to_copy_ += block_pairs;
-    }
-
-    static FASTCCD_INLINE CopiedPairs<Number>& copied_pairs(TileScratch& scratch)
-    {
-        if constexpr (holds_floats)
-            return scratch.copied_floats;
-        else
-            return scratch.copied;
-    }
-
-    const PairView& pairs_;
-    const std::size_t first_, size_;
-    CopiedPairs<Number>& copied_;
-    const Number* in_place_ = nullptr;  ///< The tile's first pair, if groups are not copied, but perhaps the last one.
-    const Number* group_ = nullptr;     ///< The group's first pair.
-    bool group_is_in_place_ = !is_copied;
-    std::size_t to_copy_ = 0, group_end_ = 0;  ///< Of the group: the next pair to copy and the end.
+    const Place first_;
+    const std::size_t size_;
+    Number* const rest_;
     Prefetcher prefetcher_;
 };
 

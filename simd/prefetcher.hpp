@@ -1,4 +1,4 @@
-// Asks for packed pairs before they are read.
+// Ask for packed pairs before they are read: Prefetcher for those that lie one after the other, StridedPrefetcher for the others.
 #pragma once
 
 #include <cstddef>
@@ -28,22 +28,20 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
     return next;
 }
 
-/// Asks for packed pairs before they are read.
+/// How far ahead of the block being read pairs are asked for, at most: 16 blocks of doubles, at least half of it. With more, lines
+/// leave the first-level cache again before they are read. In the second-level one there is room: 16 to 32 blocks, of which up
+/// to 64 are as good, and 8 take up to a tenth longer (bench/LIMITS.md).
+inline constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double), first_level_ahead = 16 * block_bytes;
+
+/// Asks for pairs in blocks or interleaved before they are read.
 class Prefetcher {
 public:
     FASTCCD_INLINE Prefetcher(const PairSource& source, std::size_t first, CacheLevel into)
         : into_{into}, most_ahead_{into == CacheLevel::second ? 2 * first_level_ahead : first_level_ahead}
     {
-        if (source.view == nullptr) return;
         const PairView& pairs = *source.view;
-        const std::size_t number = pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
-        if (pairs.layout() == PairView::Layout::strided) {
-            strided_ = &pairs;
-            element_ = static_cast<std::ptrdiff_t>(number) * pairs.stride();
-            last_ = static_cast<std::ptrdiff_t>(source.size) - 1;
-            return;
-        }
-        const std::size_t pair = pair_coordinates * number, all = source.size * pair;
+        const std::size_t pair = pair_coordinates * (pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float));
+        const std::size_t all = source.size * pair;
         if (all < most_ahead_) return;  // would be read before it came
         const auto data = reinterpret_cast<std::uintptr_t>(pairs.data());
         last_start_ = data + all - most_ahead_;
@@ -63,8 +61,33 @@ public:
         const std::uintptr_t needed = at + most_ahead_ / 2, even = next_ + pairs * rate_;
         ask_until(even < needed ? needed : even);
     }
-    /// The same for the layout `strided`, before the block that starts at pair `i` of the source.
-    FASTCCD_INLINE void at_strided_block(std::size_t i)
+
+    /// Between blocks, before something that takes about as long as memory takes for a block.
+    FASTCCD_INLINE void meanwhile() { ask_until(next_ + block_bytes); }
+
+private:
+    FASTCCD_INLINE void ask_until(std::uintptr_t until) { next_ = ask_for(next_, until < limit_ ? until : limit_, into_); }
+
+    // Addresses. As they stand here, for sources not asked for, next_ is never less than what at_pairs() would ask up to.
+    const CacheLevel into_;
+    const std::uintptr_t most_ahead_;  ///< Bytes; at least half as many are asked for before they are read.
+    std::uintptr_t next_ = most_ahead_, limit_ = 0;
+    std::uintptr_t last_start_ = 0;  ///< most_ahead_ before the end.
+    std::uintptr_t rate_ = 0;        ///< Bytes a pair.
+};
+
+/// Asks for strided pairs before they are copied.
+class StridedPrefetcher {
+public:
+    FASTCCD_INLINE StridedPrefetcher(const PairSource& source, CacheLevel into)
+        : pairs_{*source.view}, into_{into}, last_{static_cast<std::ptrdiff_t>(source.size) - 1}
+    {
+        const std::size_t number = pairs_.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
+        element_ = static_cast<std::ptrdiff_t>(number) * pairs_.stride();
+    }
+
+    /// Before the block that starts at pair `i` of the source.
+    FASTCCD_INLINE void at_block(std::size_t i)
     {
         // Of three lanes for the x, y and z of a point, so that triples, of stride 3, get all of their three lines.
         constexpr auto ahead = static_cast<std::ptrdiff_t>(first_level_ahead / 2 / block_bytes * block_pairs);
@@ -79,16 +102,7 @@ public:
             ask_for_rows<3>(offset);
     }
 
-    /// Between blocks, before something that takes about as long as memory takes for a block.
-    FASTCCD_INLINE void meanwhile() { ask_until(next_ + block_bytes); }
-
 private:
-    static constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double);
-    /// How far ahead of the block being read pairs are asked for, at most: 16 blocks of doubles, at least half of it. With more, lines
-    /// leave the first-level cache again before they are read. In the second-level one there is room: 16 to 32 blocks, of which up
-    /// to 64 are as good, and 8 take up to a tenth longer (bench/LIMITS.md).
-    static constexpr std::uintptr_t first_level_ahead = 16 * block_bytes;
-
     /// A line of each of the 24 arrays, at these bytes of the x, y and z of a point.
     template <int locality>
     FASTCCD_INLINE void ask_for_rows(const std::ptrdiff_t (&offset)[3]) const
@@ -96,19 +110,13 @@ private:
 #pragma GCC unroll 1
         for (std::size_t c = 0; c < pair_coordinates; c += 3)
             for (std::size_t axis = 0; axis < 3; ++axis)
-                __builtin_prefetch(static_cast<const std::byte*>(strided_->data(c + axis)) + offset[axis], 0, locality);
+                __builtin_prefetch(static_cast<const std::byte*>(pairs_.data(c + axis)) + offset[axis], 0, locality);
     }
 
-    FASTCCD_INLINE void ask_until(std::uintptr_t until) { next_ = ask_for(next_, until < limit_ ? until : limit_, into_); }
-
-    // Addresses. As they stand here, for sources not asked for, next_ is never less than what at_pairs() would ask up to.
+    const PairView& pairs_;
     const CacheLevel into_;
-    const std::uintptr_t most_ahead_;  ///< Bytes; at least half as many are asked for before they are read.
-    std::uintptr_t next_ = most_ahead_, limit_ = 0;
-    std::uintptr_t last_start_ = 0;  ///< most_ahead_ before the end.
-    std::uintptr_t rate_ = 0;        ///< Bytes a pair.
-    const PairView* strided_ = nullptr;
-    std::ptrdiff_t element_ = 0, last_ = 0;  ///< Bytes from a pair's coordinate to the next one's; the last pair.
+    const std::ptrdiff_t last_;   ///< The last pair.
+    std::ptrdiff_t element_ = 0;  ///< Bytes from a pair's coordinate to the next one's.
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -5,6 +5,7 @@
 #include <packed_pairs.hpp>
 #include <pipeline.hpp>
 #include <separation_pipeline.hpp>
+#include <strided_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
@@ -23,7 +24,7 @@ FASTCCD_INLINE void run_packed_tile(const TileRequest& request, TileScratch& scr
     switch (request.source->view->layout()) {
         case PairView::Layout::blocked: return run_tile_from<kind, L, PackedPairs<L, InBlocks, Number>>(request, scratch);
         case PairView::Layout::interleaved: return run_tile_from<kind, L, PackedPairs<L, Interleaved, Number>>(request, scratch);
-        case PairView::Layout::strided: return run_tile_from<kind, L, PackedPairs<L, CopiedToBlocks, Number>>(request, scratch);
+        case PairView::Layout::strided: return run_tile_from<kind, L, StridedPairs<L, Number>>(request, scratch);
     }
 }
 

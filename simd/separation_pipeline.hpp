@@ -182,7 +182,7 @@ private:
     }
 };
 
-/// Source: how the tile's pairs are read, PackedPairs or IndexedPairs.
+/// Source: how the tile's pairs are read, PackedPairs, StridedPairs or IndexedPairs.
 template <PairKind kind, class L, class Source>
 class SeparationPipeline {
 public:
@@ -196,8 +196,10 @@ public:
             const std::size_t count = size - first < group_pairs ? size - first : group_pairs;
             for (std::size_t i = 0; i < count; i += Lane<Screening>::width) {
                 const auto parts = next_parts<Screening, L>(pipeline.source_, first, i, count);
-                ask_ahead(pipeline.source_, parts);
-                pipeline.screen(parts, first + i, lanes_in_use<Screening>(count - i));
+                ask_ahead_before(pipeline.source_, parts);
+                const unsigned lanes = lanes_in_use<Screening>(count - i);
+                pipeline.screen(parts, first + i, lanes);
+                ask_ahead_after(pipeline.source_, parts, lanes);
             }
         }
         pipeline.stages_.finish();

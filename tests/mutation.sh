@@ -141,12 +141,13 @@ mutant 'apart on one half is apart' simd/pipeline.hpp 's/apart\.first & apart\.s
 mutant 'times of the tile before stay' simd/lane_results.hpp 's/scratch\.reported\[i \/ 64\] != 0\) clear/scratch.reported[i \/ 64] == 1) clear/' same_bits_test api_test
 mutant 'times never looked at are not cleared' simd/lane_results.hpp 's/if \(scratch\.cleared < count\) \{\s*clear\(/if (scratch.cleared < count) {\n        clear(count - count % 64 + 0 * /' same_bits_test api_test
 mutant 'roots of half a word not seen' simd/lane_results.hpp 's/for \(const std::uint64_t word : words\) any \|= word;/for (int k = 0; k < 4; ++k) any |= words[k];/' same_bits_test api_test
-mutant 'pairs that wait are not kept' simd/packed_pairs.hpp 's/if \(!group_is_in_place_\) keep_waiting\(screened\);//' wide_lane_test
-mutant 'interleaved: pairs that wait kept in rows' simd/packed_pairs.hpp 's/struct Interleaved \{\s*static constexpr std::size_t stride = 1;/struct Interleaved {\n    static constexpr std::size_t stride = block_pairs;/' wide_lane_test
+mutant 'pairs that wait are not kept' simd/strided_pairs.hpp 's/if \(from == to\) continue;/if (from != nullptr) continue;/' wide_lane_test
+mutant 'interleaved: past the last whole block in place' simd/packed_pairs.hpp 's/if \(i >= whole_blocks\(\)\)/if (i > size_)/' array_ends_test
+mutant 'interleaved: the first past the last whole block for all' simd/packed_pairs.hpp 's/pair\(rest_, i - whole_blocks\(\)\)/pair(rest_, 0)/' array_ends_test
 mutant 'floats: a block for both parts of a batch' simd/packed_pairs.hpp 's/load_halves\(first \+ row, second \+ row\)/load_halves(first + row, first + row)/' wide_lane_test
 mutant 'interleaved floats: the first part for both' simd/packed_pairs.hpp 's/second \+ \(lane - half\)/first + (lane - half)/' wide_lane_test
 mutant 'floats: the end of the motion not moved' simd/screened_parts.hpp 's/if \(t_max == 1\.0\) return relative_motion_of<S>/if (t_max > 0.0) return relative_motion_of<S>/' wide_lane_test same_bits_test
-mutant 'strided: the pair after the last stands for it' simd/packed_pairs.hpp 's/lane < count \? lane : count - 1\) \* stride/lane) * stride/' array_ends_test
+mutant 'strided: the pair after the last stands for it' simd/strided_pairs.hpp 's/lane < count \? lane : count - 1\) \* stride/lane) * stride/' array_ends_test
 mutant 'indexed: a pair looked up again by another number' simd/indexed_pairs.hpp 's/pairs_ \+ 2 \* number, lane, scratch_/pairs_ + 2 * (number ^ 1), lane, scratch_/' indexed_test
 mutant 'halves exchanged' $halves 's/return \{first, second\}/return {second, first}/' certificates_test
 mutant 'halved cubic by sign alone' $halves 's/broadcast<L>\(bounds\.cubic\) \* scale\.volume/broadcast<L>(0.0) * scale.volume/' certificates_test same_bits_test truth_test

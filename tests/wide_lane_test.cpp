@@ -9,6 +9,7 @@
 #include <packed_pairs.hpp>
 #include <pipeline.hpp>
 #include <separation_pipeline.hpp>
+#include <strided_pairs.hpp>
 
 #include "array_lane.hpp"
 #include "generators.hpp"
@@ -26,7 +27,7 @@ void run_tile_of(const TileRequest& request, TileScratch& scratch)
     switch (request.source->view->layout()) {
         case PairView::Layout::blocked: return Pipeline<kind, Lanes, PackedPairs<Lanes, InBlocks, Number>>::run_tile(request, scratch);
         case PairView::Layout::interleaved: return Pipeline<kind, Lanes, PackedPairs<Lanes, Interleaved, Number>>::run_tile(request, scratch);
-        case PairView::Layout::strided: return Pipeline<kind, Lanes, PackedPairs<Lanes, CopiedToBlocks, Number>>::run_tile(request, scratch);
+        case PairView::Layout::strided: return Pipeline<kind, Lanes, StridedPairs<Lanes, Number>>::run_tile(request, scratch);
     }
 }
 
