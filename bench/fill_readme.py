@@ -104,10 +104,10 @@ def speed_table(record):
     rates, last, contacts = {}, {}, {}
     for b in record["benchmarks"]:
         name = b["name"].removesuffix("_median").removesuffix("/manual_time")
-        match = re.fullmatch(r"(vertex_face|edge_edge)/(avx2|avx512|neon)/([^/]+)/(blocked|interleaved|indexed)/double/threads:1", name)
+        match = re.fullmatch(r"(vertex_face|edge_edge)/(avx2|avx512|neon)/([^/]+)/(blocked|interleaved|indexed)/(double|float)/threads:1", name)
         if not match or b.get("aggregate_name", "median") != "median":
             continue
-        key = (match[1].replace("_", "-"), match[3], match[4])
+        key = (match[1].replace("_", "-"), match[3], match[4] + (", floats" if match[5] == "float" else ""))
         rates.setdefault(key, {})[match[2]] = b["pairs/s"] / 1e6
         last[key] = f"{100 * b['limit_fraction']:.0f} %" if "limit_fraction" in b else "-"
         contacts[key] = int(b["contacts"])
