@@ -167,8 +167,11 @@ public:
 
     [[nodiscard]] FASTCCD_INLINE std::size_t size() const { return size_; }
 
+    /// Before pairs from `i` on, a multiple of group_pairs, are read. Groups are begun in order.
     FASTCCD_INLINE void begin_group(std::size_t /*i*/) {}
+    /// Before the 8 pairs from `i` on, of the group, are read.
     FASTCCD_INLINE void begin_block(std::size_t /*i*/) {}
+    /// Of a pair of the group. What is read past the tile's last pair, up to a multiple of 8, may be anything.
     [[nodiscard]] FASTCCD_INLINE Place place(std::size_t i) const
     {
         if constexpr (!Layout::in_whole_blocks)
@@ -177,14 +180,17 @@ public:
     }
 
     /// About when a batch of L is read. Batch by batch, although 8 blocks lie between what is asked for and what is read: with four lanes, at a
-    /// block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/LIMITS.md). For pairs that were copied, wherever they were, no more is asked for than is left of the source.
+    /// block's start for both of its batches, scenes took 3 to 5 % longer on AMD's family 25 (bench/LIMITS.md). At pairs that were copied, the
+    /// last ones of the source, no more is asked for than is left of it.
     FASTCCD_INLINE void ask_ahead(Place batch) { prefetcher_.at_pairs(batch, Lane<L>::width); }
     /// Before a batch of a later stage.
     FASTCCD_INLINE void meanwhile() { prefetcher_.meanwhile(); }
 
     /// For the pair at `k` in [screened], which is pair `i`.
     FASTCCD_INLINE void keep_place(ScreenedQueue& screened, unsigned k, std::size_t i) const { screened.pairs[k] = place(i); }
+    /// Coordinates of the `count` pairs after the last one in [screened].
     FASTCCD_INLINE auto collected(ScreenedQueue& screened, unsigned count) const { return this->collected_near(first_, screened, count); }
+    /// Before the next group is begun. Less than a batch is left in [screened].
     FASTCCD_INLINE void end_group(ScreenedQueue&) {}
 
 private:
