@@ -123,7 +123,7 @@ struct PairReader {
     {
         return Layout::template in_single<S>(parts[0], parts[1]);
     }
-    /// Coordinates of the `count` pairs after the last one in [screened], none farther from `near` than a tile.
+    /// Coordinates of the `count` pairs after the last one in [screened]; if they lie in blocks, with one at `near` (Lane::Collector).
     static FASTCCD_INLINE auto collected_near(Place near, ScreenedQueue& screened, unsigned count)
     {
         const void** const pairs = screened.pairs + screened.size;

@@ -51,16 +51,16 @@ FASTCCD_INLINE RelativeMotion<S> motion_of_parts(const Parts<S, L, Source>& part
     return with_coordinates(parts, [&](const auto& at) FASTCCD_INLINE_LAMBDA { return relative_motion_in<S, L>(at, t_max); });
 }
 
-/// Asks for memory ahead, for every part that is read, half of them before a batch is screened and half after. All of them before, after, or in
+/// Asks for memory ahead, for every part that is read: of two, for one before the batch is screened and for one after. Both before, after, or in
 /// the midst of it was slower, from memory or from the second-level cache (bench/LIMITS.md).
 template <class S, class L, class Source>
 FASTCCD_INLINE void ask_ahead_before(Source& source, const Parts<S, L, Source>& parts)
 {
     if constexpr (Source::asks_ahead && Parts<S, L, Source>::count == 2) source.ask_ahead(parts.at[0]);
 }
-/// `found` is what screening found. The barrier is for g++, which otherwise moves the call up between arithmetic that it does not depend on.
+/// What screening found, if given, is known then: without a barrier g++ moves the call up between arithmetic that it does not depend on.
 template <class S, class L, class Source>
-FASTCCD_INLINE void ask_ahead_after(Source& source, const Parts<S, L, Source>& parts, unsigned found)
+FASTCCD_INLINE void ask_ahead_after(Source& source, const Parts<S, L, Source>& parts, unsigned found = 0)
 {
     if constexpr (Source::asks_ahead) {
         asm volatile("" : : "r"(found));

@@ -197,9 +197,8 @@ public:
             for (std::size_t i = 0; i < count; i += Lane<Screening>::width) {
                 const auto parts = next_parts<Screening, L>(pipeline.source_, first, i, count);
                 ask_ahead_before(pipeline.source_, parts);
-                const unsigned lanes = lanes_in_use<Screening>(count - i);
-                pipeline.screen(parts, first + i, lanes);
-                ask_ahead_after(pipeline.source_, parts, lanes);
+                pipeline.screen(parts, first + i, lanes_in_use<Screening>(count - i));
+                ask_ahead_after(pipeline.source_, parts);
             }
         }
         pipeline.stages_.finish();

@@ -1,61 +1,26 @@
 // Nothing outside the caller's arrays is read or written: they lie between pages that may not be touched.
 #include <gtest/gtest.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
-#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "generators.hpp"
+#include "guarded_array.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
 namespace {
 
-enum class Side { end, beginning };
+std::vector<std::size_t> sizes() { return {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 56, 63, 64, 65, 71, 72, 127, 130, 325, 4095, 4096, 4097, 4104}; }
 
-/// An array that ends where a page begins that may not be touched, or begins where one ends.
-template <class T>
-class GuardedArray {
-public:
-    GuardedArray(std::size_t size, Side side) : size_{size}
-    {
-        const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-        inside_ = (size * sizeof(T) + page - 1) / page * page;
-        whole_ = inside_ + 2 * page;
-        memory_ = ::mmap(nullptr, whole_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-        if (memory_ == MAP_FAILED) throw std::runtime_error("no memory");
-        char* const inside = static_cast<char*>(memory_) + page;
-        if (inside_ > 0 && ::mprotect(inside, inside_, PROT_READ | PROT_WRITE) != 0) throw std::runtime_error("no pages");
-        first_ = reinterpret_cast<T*>(side == Side::end ? inside + inside_ - size * sizeof(T) : inside);
-    }
-    GuardedArray(const std::vector<T>& values, Side side) : GuardedArray(values.size(), side)
-    {
-        std::copy(values.begin(), values.end(), first_);
-    }
-    GuardedArray(const GuardedArray&) = delete;
-    GuardedArray& operator=(const GuardedArray&) = delete;
-    ~GuardedArray() { ::munmap(memory_, whole_); }
-
-    [[nodiscard]] T* data() const { return first_; }
-    [[nodiscard]] std::size_t size() const { return size_; }
-
-private:
-    std::size_t size_, inside_ = 0, whole_ = 0;
-    void* memory_ = nullptr;
-    T* first_ = nullptr;
-};
-
-std::vector<std::size_t> sizes() { return {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 56, 63, 64, 65, 71, 72, 127, 130, 200, 4095, 4096, 4097, 4104}; }
-
-/// Times of all pairs, for each minimum separation asked about.
+/// Times of all pairs, for each minimum separation and end of the step asked about.
 struct Expected {
-    double separation;
+    double separation, t_max;
     std::vector<double> toi;
 };
 
@@ -63,14 +28,15 @@ struct Expected {
 void expect_times(PairKind kind, const PairView& view, const std::vector<Expected>& expected, Side side, const std::string& what)
 {
     for (const Isa isa : isas_to_test())
-        for (const auto& [separation, times] : expected) {
+        for (const auto& [separation, t_max, times] : expected) {
             Options options;
             options.isa = isa;
             options.minimum_separation = separation;
+            options.t_max = t_max;
             const GuardedArray<double> toi{view.size(), side};
             ASSERT_TRUE(time_of_impact(kind, view, options, {toi.data(), toi.size()}).ok());
             ASSERT_TRUE(std::equal(toi.data(), toi.data() + toi.size(), times.begin()))
-                << what << ' ' << name(isa) << ' ' << view.size() << ' ' << separation;
+                << what << ' ' << name(isa) << ' ' << view.size() << ' ' << separation << ' ' << t_max;
         }
 }
 
@@ -113,10 +79,11 @@ TEST(ArrayEnds, PackedPairsAreReadToTheirEndsAndNoFarther)
                 pairs.insert(pairs.end(), more.begin(), more.end());
             }
         std::vector<Expected> expected;
-        for (const double separation : {0.0, 1e-3}) {
+        for (const auto& [separation, t_max] : {std::pair{0.0, 1.0}, {1e-3, 1.0}, {0.0, 0.37}}) {
             Options options;
             options.minimum_separation = separation;
-            expected.push_back({separation, answer_without_roots(kind, to_buffer(pairs).view(), options).toi});
+            options.t_max = t_max;
+            expected.push_back({separation, t_max, answer_without_roots(kind, to_buffer(pairs).view(), options).toi});
         }
         for (const Side side : {Side::end, Side::beginning}) {
             check_packed<double>(kind, pairs, expected, side);

@@ -142,7 +142,7 @@ mutant 'times of the tile before stay' simd/lane_results.hpp 's/scratch\.reporte
 mutant 'times never looked at are not cleared' simd/lane_results.hpp 's/if \(scratch\.cleared < count\) \{\s*clear\(/if (scratch.cleared < count) {\n        clear(count - count % 64 + 0 * /' same_bits_test api_test
 mutant 'roots of half a word not seen' simd/lane_results.hpp 's/for \(const std::uint64_t word : words\) any \|= word;/for (int k = 0; k < 4; ++k) any |= words[k];/' same_bits_test api_test
 mutant 'pairs that wait are not kept' simd/strided_pairs.hpp 's/if \(from == to\) continue;/if (from != nullptr) continue;/' wide_lane_test
-mutant 'interleaved: past the last whole block in place' simd/packed_pairs.hpp 's/if \(i >= whole_blocks\(\)\)/if (i > size_)/' array_ends_test
+mutant 'interleaved: past the last whole block in place' simd/packed_pairs.hpp 's/if \(i >= whole_blocks\(\)\)/if (i > size_)/' wide_lane_test
 mutant 'interleaved: the first past the last whole block for all' simd/packed_pairs.hpp 's/pair\(rest_, i - whole_blocks\(\)\)/pair(rest_, 0)/' array_ends_test
 mutant 'floats: a block for both parts of a batch' simd/packed_pairs.hpp 's/load_halves\(first \+ row, second \+ row\)/load_halves(first + row, first + row)/' wide_lane_test
 mutant 'interleaved floats: the first part for both' simd/packed_pairs.hpp 's/second \+ \(lane - half\)/first + (lane - half)/' wide_lane_test

@@ -82,8 +82,8 @@ TEST(SameBits, IsasOnManyUniformPairs)
 {
     std::vector<oracle::Pair> pairs;
     for (const auto kind : kinds) {
-        generate("uniform", kind, 32, amount(60000), pairs);
-        expect_same_on_every_isa(kind, to_buffer(pairs).view(), 1e-9, kind_name(kind));
+        generate("uniform", kind, 32, amount(16 * 4096 + 7), pairs);  // full tiles, and less than a block
+        expect_same_on_every_isa(kind, interleaved(pairs), 1e-9, kind_name(kind));
     }
 }
 
@@ -102,12 +102,15 @@ TEST(SameBits, IsasOnPublicData)
 TEST(SameBits, Layouts)
 {
     for (const auto kind : kinds) {
-        const auto pairs = mixed_pairs(kind, 33, 37);  // a size that is no multiple of 8
+        auto pairs = mixed_pairs(kind, 33, 37);
+        pairs.resize(pairs.size() - 3);  // no multiple of 8
         const Answer expected = reference(kind, interleaved(pairs), 1e-9);
         const PairBuffer buffer = to_buffer(pairs);
         const std::size_t numbers = (pairs.size() + block_pairs - 1) / block_pairs * block_coordinates;
         std::vector<double> shifted(numbers + 1);  // allocators align to 16 bytes, so one double later is never the start of a line
         std::memcpy(&shifted[1], buffer.view().data(), numbers * sizeof(double));
+        std::vector<double> shifted_records(pairs.size() * pair_coordinates + 1);
+        std::memcpy(&shifted_records[1], pairs.data(), pairs.size() * pair_coordinates * sizeof(double));
 
         // 24 columns, and the same backwards with a negative stride; 8 columns of x y z triples.
         std::vector<double> columns(pairs.size() * pair_coordinates), backwards(columns.size()), points(columns.size());
@@ -131,6 +134,7 @@ TEST(SameBits, Layouts)
             expect(buffer.view(), "blocked");
             expect(PairView::blocked(&shifted[1], pairs.size()), "blocked, not aligned");
             expect(interleaved(pairs), "interleaved");
+            expect(PairView::interleaved(&shifted_records[1], pairs.size()), "interleaved, not aligned");
             expect(PairView::strided(forward, 1, pairs.size()), "strided");
             expect(PairView::strided(reversed, -1, pairs.size()), "strided backwards");
             expect(PairView::strided(triples, 3, pairs.size()), "strided triples");
@@ -184,6 +188,7 @@ TEST(SameBits, FloatLayoutsWidenExactly)
             pair[i % 8][i % 3] = i % 2 == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
             pairs.push_back(pair);
         }
+        pairs.resize(pairs.size() / 8 * 8 - 3);  // the last five all have a coordinate that is not finite
         const FloatPairs floats{pairs};
         for (const double t_max : {1.0, 0.37})
             for (const double separation : {0.0, 1e-2}) {

@@ -114,7 +114,8 @@ TEST(SeparationBits, IsasOnPublicData)
 TEST(SeparationBits, LayoutsAndCompactAnswers)
 {
     for (const auto kind : kinds) {
-        const auto pairs = mixed_with_invalid_pairs(kind, 122, 37);
+        auto pairs = mixed_with_invalid_pairs(kind, 122, 37);
+        pairs.resize(pairs.size() / 8 * 8 - 3);
         const Answer expected = reference(kind, interleaved(pairs), options_for(1e-2));
         std::vector<double> columns(pairs.size() * pair_coordinates);
         std::array<const double*, pair_coordinates> column{};

@@ -13,6 +13,7 @@
 
 #include "array_lane.hpp"
 #include "generators.hpp"
+#include "guarded_array.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
@@ -60,10 +61,11 @@ std::size_t expect_decided_as_searched(oracle::Kind kind, const std::vector<orac
     options.t_max = t_max;
     const Answer expected = answer(kind, buffer.view(), options);
     std::size_t decided = 0;
-    // Blocks and records read in place, blocks filled anew for every group, and records.
+    // Blocks and records read in place, and no farther than they reach, and blocks filled anew for every group.
     std::array<const double*, pair_coordinates> columns{};
     for (std::size_t c = 0; c < pair_coordinates; ++c) columns[c] = &pairs[0][c / 3][c % 3];
-    std::vector<PairView> views{buffer.view(), interleaved(pairs),
+    const GuardedArray<oracle::Pair> records{pairs, Side::end};
+    std::vector<PairView> views{buffer.view(), PairView::interleaved(&records.data()[0][0][0], pairs.size()),
                                 PairView::strided(columns, static_cast<std::ptrdiff_t>(pair_coordinates), pairs.size())};
     std::vector<float> floats, float_blocks(buffer.block_count() * block_coordinates);
     for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -71,8 +73,9 @@ std::size_t expect_decided_as_searched(oracle::Kind kind, const std::vector<orac
             floats.push_back(static_cast<float>(pairs[i][c / 3][c % 3]));
             float_blocks[i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs] = floats.back();
         }
+    const GuardedArray<float> float_records{floats, Side::end};
     if (family.starts_with("f32")) {
-        views.push_back(PairView::interleaved(floats.data(), pairs.size()));
+        views.push_back(PairView::interleaved(float_records.data(), pairs.size()));
         views.push_back(PairView::blocked(float_blocks.data(), pairs.size()));
     }
     for (const PairView& view : views) {
@@ -111,7 +114,7 @@ TEST(WideLanes, DecideTheFewThatAreNotClearlyApart)
 {
     for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
         std::vector<oracle::Pair> pairs;
-        generate("f32_uniform", kind, 42, 3001, pairs);
+        generate("f32_uniform", kind, 42, 3005, pairs);
         const std::size_t first_primitive = kind == oracle::Kind::vertex_face ? 1 : 2;  // points
         const auto move = [](double& x) { x = static_cast<float>(x + 8.0); };
         for (std::size_t i = 0; i < pairs.size(); ++i) {
