@@ -194,9 +194,10 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::filesystem::path& 
     const bool records = shape.size() == 3 && shape[1] == 8 && shape[2] == 3;
     const bool blocks = shape.size() == 3 && shape[1] == pair_coordinates && shape[2] == block_pairs;
     if (!records && !blocks) {
-        throw InputError(path, fmt::format("has shape ({}); pairs are (N, 8, 3), or (B, 24, 8) in blocks of 8 pairs",
+        throw InputError(path, fmt::format("has shape ({}{}); pairs are (N, 8, 3), or (B, 24, 8) in blocks of 8 pairs",
                                            fmt::join(shape.begin(), shape.begin() + std::min<std::ptrdiff_t>(
-                                                                        8, std::ssize(shape)), ", ")));
+                                                                        8, std::ssize(shape)), ", "),
+                                           shape.size() == 1 ? "," : ""));
     }
 
     const std::size_t scalar_size = dtype == "<f8" ? sizeof(double) : sizeof(float);
@@ -209,8 +210,8 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::filesystem::path& 
                                            shape[0], shape[1], shape[2], dtype, shape[0], item_size, available));
     }
     if (const std::size_t excess = available - shape[0] * item_size; excess != 0) {
-        throw InputError(path, fmt::format("has {} bytes after the end of its array of shape ({}, {}, {}), at byte {}",
-                                           excess, shape[0], shape[1], shape[2], bytes.size() - excess));
+        throw InputError(path, fmt::format("has {} byte{} after the end of its array of shape ({}, {}, {}), at byte {}",
+                                           excess, excess == 1 ? "" : "s", shape[0], shape[1], shape[2], bytes.size() - excess));
     }
     if (header.end % scalar_size != 0) {
         throw InputError(path, fmt::format("has its array at byte {}, which is not aligned to its {}-byte numbers; "
