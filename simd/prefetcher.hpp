@@ -28,10 +28,16 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
     return next;
 }
 
+inline constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double);
 /// How far ahead of the block being read pairs are asked for, at most: 16 blocks of doubles, at least half of it. With more, lines
 /// leave the first-level cache again before they are read. In the second-level one there is room: 16 to 32 blocks, of which up
 /// to 64 are as good, and 8 take up to a tenth longer (bench/LIMITS.md).
-inline constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double), first_level_ahead = 16 * block_bytes;
+inline constexpr std::uintptr_t first_level_ahead = 16 * block_bytes;
+
+FASTCCD_INLINE std::size_t bytes_of_a_number(const PairView& pairs)
+{
+    return pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
+}
 
 /// Asks for pairs in blocks or interleaved before they are read.
 class Prefetcher {
@@ -40,8 +46,7 @@ public:
         : into_{into}, most_ahead_{into == CacheLevel::second ? 2 * first_level_ahead : first_level_ahead}
     {
         const PairView& pairs = *source.view;
-        const std::size_t pair = pair_coordinates * (pairs.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float));
-        const std::size_t all = source.size * pair;
+        const std::size_t pair = pair_coordinates * bytes_of_a_number(pairs), all = source.size * pair;
         if (all < most_ahead_) return;  // would be read before it came
         const auto data = reinterpret_cast<std::uintptr_t>(pairs.data());
         last_start_ = data + all - most_ahead_;
@@ -80,10 +85,9 @@ private:
 class StridedPrefetcher {
 public:
     FASTCCD_INLINE StridedPrefetcher(const PairSource& source, CacheLevel into)
-        : pairs_{*source.view}, into_{into}, last_{static_cast<std::ptrdiff_t>(source.size) - 1}
+        : pairs_{*source.view}, into_{into}, last_{static_cast<std::ptrdiff_t>(source.size) - 1},
+          element_{static_cast<std::ptrdiff_t>(bytes_of_a_number(pairs_)) * pairs_.stride()}
     {
-        const std::size_t number = pairs_.scalar() == PairView::Scalar::float64 ? sizeof(double) : sizeof(float);
-        element_ = static_cast<std::ptrdiff_t>(number) * pairs_.stride();
     }
 
     /// Before the block that starts at pair `i` of the source.
@@ -115,8 +119,8 @@ private:
 
     const PairView& pairs_;
     const CacheLevel into_;
-    const std::ptrdiff_t last_;   ///< The last pair.
-    std::ptrdiff_t element_ = 0;  ///< Bytes from a pair's coordinate to the next one's.
+    const std::ptrdiff_t last_;     ///< The last pair.
+    const std::ptrdiff_t element_;  ///< Bytes from a pair's coordinate to the next one's.
 };
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

@@ -58,7 +58,8 @@ FASTCCD_INLINE void ask_ahead_before(Source& source, const Parts<S, L, Source>& 
 {
     if constexpr (Source::asks_ahead && Parts<S, L, Source>::count == 2) source.ask_ahead(parts.at[0]);
 }
-/// What screening found, if given, is known then: without a barrier g++ moves the call up between arithmetic that it does not depend on.
+/// Behind a barrier, and behind what screening found where that is given: g++ otherwise moves the call up between arithmetic that does not depend
+/// on it.
 template <class S, class L, class Source>
 FASTCCD_INLINE void ask_ahead_after(Source& source, const Parts<S, L, Source>& parts, unsigned found = 0)
 {

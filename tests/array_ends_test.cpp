@@ -16,7 +16,7 @@
 namespace fastccd::testing {
 namespace {
 
-std::vector<std::size_t> sizes() { return {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 56, 63, 64, 65, 71, 72, 127, 130, 325, 4095, 4096, 4097, 4104}; }
+std::vector<std::size_t> sizes() { return {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 56, 63, 64, 65, 71, 72, 127, 130, 200, 325, 4095, 4096, 4097, 4104}; }
 
 /// Times of all pairs, for each minimum separation and end of the step asked about.
 struct Expected {
