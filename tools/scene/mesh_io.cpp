@@ -101,8 +101,8 @@ Mesh parse_mesh(std::string_view content, const std::filesystem::path& path)
         path,
         content.empty()
             ? "the file is empty; a PLY or OBJ mesh is needed"
-            : "not a mesh that is read here: a PLY file begins with the line 'ply', the name of an "
-              "OBJ file ends in '.obj'");
+            : "not a mesh that is read here: PLY begins with the line 'ply', OBJ is read from files whose "
+              "names end in '.obj', not through pipes");
 }
 
 Mesh read_mesh(const std::filesystem::path& path)
