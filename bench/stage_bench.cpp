@@ -112,7 +112,8 @@ void register_benchmarks(bool)
             add(kind, fastccd::name(table.isa), stage.name, data,
                 [stage](benchmark::State& state, const std::string& d, PairKind k) { run_stage(state, stage, d, k); });
     };
-    // What a stage costs depends little on the scene, what it keeps does: public ones on the widest instruction set alone.
+    // What a stage costs depends little on the scene, what it keeps does: public ones on the widest instruction set alone. None of
+    // "grids", whose contacts at sides and ends are decided after all stages.
     for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge})
         for (const std::string& data : available_datasets())
             for (const StageTable* table : tables)
