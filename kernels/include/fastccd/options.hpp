@@ -30,7 +30,8 @@ struct Options {
     /// E_tol: width of the time interval, in units of the step (t in [0, 1]), within which the first contact is located if
     /// it is a regular one, at which the primitives cross beyond rounding. Where they only touch, toi may be earlier: the
     /// first time at which rounding cannot exclude contact (README, Accuracy). Below about 1e-12 regular ones may be earlier than
-    /// this, too, as the sign of their cubic is lost in rounding so close to the root: random pairs by less than 1e-12. Positive and finite; values below 2^-50 act as 2^-50.
+    /// this, too, as the sign of their cubic is lost in rounding so close to the root: random pairs by less than 1e-12.
+    /// Positive and finite; values below 2^-50 act as 2^-50.
     double tolerance = 1e-9;
     /// Contact is searched in [0, t_max], 0 < t_max <= 1.
     double t_max = 1.0;
