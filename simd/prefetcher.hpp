@@ -14,7 +14,7 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 /// Asks for memory from one address to another, line by line, and returns where it stopped (a function without a result would be
 /// taken for one without effect). Not inlined, and its loops not unrolled: lines that one and the same instruction asks for, in their
 /// order, come faster, probably because the hardware's own prefetchers take them up. With two instructions in turn half as many
-/// lines are under way (bench/LIMITS.md). Static, so that g++ sees which registers it leaves alone: all vectors.
+/// lines are under way (bench/LIMITS_MEMORY.md). Static, so that g++ sees which registers it leaves alone: all vectors.
 [[maybe_unused]] __attribute__((noinline)) static std::uintptr_t ask_for(std::uintptr_t next, std::uintptr_t end, CacheLevel into)
 {
     constexpr std::uintptr_t line = 64;
@@ -31,7 +31,7 @@ namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 inline constexpr std::uintptr_t block_bytes = block_coordinates * sizeof(double);
 /// How far ahead of the block being read pairs are asked for, at most: 16 blocks of doubles, at least half of it. With more, lines
 /// leave the first-level cache again before they are read. In the second-level one there is room: 16 to 32 blocks, of which up
-/// to 64 are as good, and 8 take up to a tenth longer (bench/LIMITS.md).
+/// to 64 are as good, and 8 take up to a tenth longer (bench/LIMITS_MEMORY.md).
 inline constexpr std::uintptr_t first_level_ahead = 16 * block_bytes;
 
 FASTCCD_INLINE std::size_t bytes_of_a_number(const PairView& pairs)
@@ -51,7 +51,7 @@ public:
         const auto data = reinterpret_cast<std::uintptr_t>(pairs.data());
         last_start_ = data + all - most_ahead_;
         next_ = data + first * pair;
-        // About what memory delivers while a pair is screened; a half to five sixths make no difference (bench/LIMITS.md).
+        // About what memory delivers while a pair is screened; a half to five sixths make no difference (bench/LIMITS_MEMORY.md).
         rate_ = pair * 2 / 3;
     }
 

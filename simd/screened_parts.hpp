@@ -52,7 +52,7 @@ FASTCCD_INLINE RelativeMotion<S> motion_of_parts(const Parts<S, L, Source>& part
 }
 
 /// Asks for memory ahead, for every part that is read: of two, for one before the batch is screened and for one after. Both before, after, or in
-/// the midst of it was slower, from memory or from the second-level cache (bench/LIMITS.md).
+/// the midst of it was slower, from memory or from the second-level cache (bench/LIMITS_MEMORY.md).
 template <class S, class L, class Source>
 FASTCCD_INLINE void ask_ahead_before(Source& source, const Parts<S, L, Source>& parts)
 {

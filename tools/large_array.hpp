@@ -13,7 +13,7 @@
 namespace fastccd::tools {
 
 /// Times or index pairs, of 8 bytes each. On the small pages of a std::vector, which is what Linux gives where large ones have to be asked
-/// for, what is timed may take much longer (bench/LIMITS.md, Pages). Constructors throw std::bad_alloc.
+/// for, what is timed may take much longer (bench/LIMITS_MEMORY.md, Pages). Constructors throw std::bad_alloc.
 template <class T>
 class LargeArray {
     static_assert(sizeof(T) == sizeof(double) && alignof(T) <= alignof(double) && std::is_trivially_copyable_v<T>);
