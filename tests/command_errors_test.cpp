@@ -426,6 +426,10 @@ TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
     refused({"--hits=", file}, "--hits=: the value is empty");
     refused({"--save=", file}, "--save=: the value is empty");
     refused({"--save", ""}, "--save: the value is empty");
+    refused({"--hits", "--json"}, "--hits: '--json' begins like an option; a file or folder of that name is ./--json");
+    refused({"--save", "--parity"}, "--save: '--parity' begins like an option");
+    refused({"--save", "-q"}, "--save: '-q' begins like an option");
+    EXPECT_FALSE(std::filesystem::exists("--json") || std::filesystem::exists("--parity") || std::filesystem::exists("-q"));
     EXPECT_TRUE(directory.names().empty());
     EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "16", "--quiet", "--hits", "/dev/null", "--save", "/dev/null"}).status, 0);
 

@@ -92,6 +92,7 @@ TEST(SceneCommandErrors, OutputThatCannotBeWrittenIsAnError)
         {{"--save-pairs", a}, 1, "a.obj: is no folder"},
         {{"--save-pairs", a + "/p", "--hits", directory / "hits.csv"}, 1, "a.obj/p: cannot be created: Not a directory"},
         {{"--save-pairs", "-"}, 2, "--save-pairs"},
+        {{"--save-pairs", "--json"}, 2, "--save-pairs: '--json' begins like an option"},
         {{"--save-pairs", pipes / ""}, 1, "step_000_vf.npy: is no regular file"},
     };
     for (const auto& [more, status, message] : table) {

@@ -72,7 +72,7 @@ void add_random_command(CLI::App& app)
         ->check([](const std::string& path) {
             return OutputFile::is_standard_output(path) ? "the report goes to standard output; name a file" : "";
         })
-        ->check(not_empty())
+        ->check(output_name())
         ->check([](const std::string& path) {
             const std::string extension = std::filesystem::path{path}.extension().string();
             return CLI::detail::to_lower(extension) == ".csv" ? "what is written is .npy, and `run` would read it as its name says" : "";

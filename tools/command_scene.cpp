@@ -52,7 +52,7 @@ void add_scene_command(CLI::App& app)
         ->check([](const std::string& path) {
             return OutputFile::is_standard_output(path) ? "is to be a folder" : "";
         })
-        ->check(not_empty())
+        ->check(output_name())
         ->type_name("DIR");
     add_search_options(*command, options->common);
     add_separation_options(*command, options->common);

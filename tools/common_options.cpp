@@ -146,7 +146,7 @@ void add_report_options(CLI::App& command, CommonOptions& options, const std::st
                     fmt::format("Write the contacts as CSV: {}.\n"
                                 "- is standard output, and moves the report to standard error",
                                 hits_columns))
-        ->check(not_empty())
+        ->check(output_name())
         ->type_name("OUT.csv");
     command.add_flag("--proof", options.proof, "A last column proven in --hits: 1, or 0 for a contact that is\npossible to within rounding")
         ->needs("--hits");
@@ -192,6 +192,17 @@ void refuse_overwriting_output(const CommonOptions& options, const std::filesyst
 CLI::Validator not_empty()
 {
     return {[](std::string& text) { return text.empty() ? std::string{"the value is empty"} : std::string{}; }, std::string{}};
+}
+
+CLI::Validator output_name()
+{
+    return {[](std::string& text) -> std::string {
+                if (text.empty()) return "the value is empty";
+                if (text.size() > 1 && text.front() == '-')
+                    return fmt::format("'{0}' begins like an option; a file or folder of that name is ./{0}", text);
+                return {};
+            },
+            std::string{}};
 }
 
 PairRange parse_range(const std::string& text, std::size_t pairs)
