@@ -196,13 +196,13 @@ CLI::Validator not_empty()
 
 CLI::Validator output_name()
 {
-    return {[](std::string& text) -> std::string {
-                if (text.empty()) return "the value is empty";
-                if (text.size() > 1 && text.front() == '-')
-                    return fmt::format("'{0}' begins like an option; a file or folder of that name is ./{0}", text);
-                return {};
-            },
-            std::string{}};
+    const CLI::Validator not_like_an_option{
+        [](std::string& text) -> std::string {
+            if (text.size() < 2 || text.front() != '-') return {};
+            return fmt::format("'{0}' begins like an option; a file or folder of that name is ./{0}", text);
+        },
+        std::string{}};
+    return not_empty() & not_like_an_option;
 }
 
 PairRange parse_range(const std::string& text, std::size_t pairs)

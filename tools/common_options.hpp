@@ -62,8 +62,8 @@ void refuse_overwriting_output(const CommonOptions& options, const std::filesyst
 /// Refuses the empty string, as of a variable of the shell that is not set.
 [[nodiscard]] CLI::Validator not_empty();
 
-/// Refuses names of files and folders to be written that are hardly meant: the empty string, and what begins like an option, as CLI11 takes whatever
-/// comes after an option that has a value for it. What `-` alone means is up to the option.
+/// For files and folders to be written: refuses the empty string, and what begins like an option. CLI11 takes whatever follows as the value, so
+/// `--hits --json` would write a file `--json`. What `-` alone means is up to the option.
 [[nodiscard]] CLI::Validator output_name();
 
 /// Adds an option that takes a decimal number in [least, most]. (CLI11 by itself reads 010 as 8.)
