@@ -256,9 +256,11 @@ struct ErrorBounds {
 /// components err by a few 2^-1074: far below u 2^-266. Pairs that the floor matters to are hardly ever certified by the lanes
 /// and go to the scalar path, which scales axes by powers of two.
 inline constexpr double length_floor = 0x1p-266;
-/// The same for lanes of single precision, which screen pairs with extents between 2^-30 and 2^40. Areas are 2^-80 and volumes 2^-120 at
-/// least. A product of two components that underflows errs by at most 2^-150, far below single_u 2^-80, and that times the third component Z
-/// by 2^-150 Z, some thousand times over: far below single_u 2^-80 Z. Bounds of volumes, 2^-137 at least, are rounded by 2^-150.
+/// The same for lanes of single precision, which screen pairs whose largest extent is between 2^-30 and 2^40. Areas are 2^-80 and volumes
+/// 2^-120 at least. A product of two components that underflows errs by at most 2^-150, far below single_u 2^-80, and that times the third
+/// component Z by 2^-150 Z, some thousand times over: far below single_u 2^-80 Z. Bounds of volumes, 2^-137 at least, are rounded by 2^-150.
+/// Components below 2^-126 err by 2^-150 where they are rounded to single precision, and by a few times that where they are interpolated: more than rho
+/// single_u times an extent that is as small, but far below single_u 2^-40, which every bound has of it.
 inline constexpr double single_length_floor = 0x1p-40;
 [[nodiscard]] FASTCCD_INLINE constexpr double extent_floor(bool single) { return single ? single_length_floor : length_floor; }
 /// Smallest V for which discriminants (degree 2 in V) cannot underflow.

@@ -156,7 +156,7 @@ struct SeparationBounds {
     /// rho = 1, and the slack, 2^30 u, covers the bounds above and what computed coefficients err by there, twice each. d is 16 single_u
     /// above what it is in double, by which what it adds is more. Where d is below 2^-126 it is off by 2^-150, and what it adds by some 2^-145
     /// of areas or lengths, or by some 2^-145 itself where that underflows: slack times V is 2^-63 of each area and 2^-143 at least, as extents
-    /// are 2^-40 at least, with edge functions and lengths alike, and gaps have their floor.
+    /// of areas and volumes are 2^-40 at least, with edge functions and lengths alike, and gaps have their floor.
     [[nodiscard]] FASTCCD_INLINE constexpr FartherBounds certificates_in_single(const SeparationParameters& wanted) const
     {
         constexpr double single_u = ErrorBounds::single_u;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -40,30 +41,36 @@ void expect_times(PairKind kind, const PairView& view, const std::vector<Expecte
         }
 }
 
+/// All layouts of the first pairs, of so many at a time.
 template <class T>
-void check_packed(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const std::vector<Expected>& expected, Side side)
+void check_packed(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const std::vector<Expected>& expected, Side side,
+                  const std::vector<std::size_t>& numbers)
 {
     const std::string name = sizeof(T) == sizeof(double) ? "doubles" : "floats";
-    for (const std::size_t size : sizes()) {
+    constexpr auto pair_stride = static_cast<std::ptrdiff_t>(pair_coordinates);
+    for (const std::size_t size : numbers) {
         const std::size_t blocks = (size + block_pairs - 1) / block_pairs;
         std::vector<T> interleaved(size * pair_coordinates), blocked(blocks * block_coordinates), columns(size * pair_coordinates);
+        std::vector<T> backwards(size * pair_coordinates);
         for (std::size_t i = 0; i < size; ++i)
             for (std::size_t c = 0; c < pair_coordinates; ++c) {
                 const T x = static_cast<T>(pairs[i][c / 3][c % 3]);
-                interleaved[i * pair_coordinates + c] = columns[c * size + i] = x;
+                interleaved[i * pair_coordinates + c] = columns[c * size + i] = backwards[(size - 1 - i) * pair_coordinates + c] = x;
                 blocked[i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs] = x;
             }
-        const GuardedArray<T> one_by_one{interleaved, side}, in_blocks{blocked, side}, in_columns{columns, side};
-        std::array<const T*, pair_coordinates> column{}, strided{};
+        const GuardedArray<T> one_by_one{interleaved, side}, in_blocks{blocked, side}, in_columns{columns, side}, from_the_end{backwards, side};
+        std::array<const T*, pair_coordinates> column{}, strided{}, last{};
         for (std::size_t c = 0; c < pair_coordinates; ++c) {
             column[c] = in_columns.data() + c * size;
             strided[c] = one_by_one.data() + c;
+            last[c] = from_the_end.data() + (size - 1) * pair_coordinates + c;
         }
         const PairKind asked = pair_kind(kind);
         expect_times(asked, PairView::interleaved(one_by_one.data(), size), expected, side, "interleaved " + name);
         expect_times(asked, PairView::blocked(in_blocks.data(), size), expected, side, "blocked " + name);
         expect_times(asked, PairView::strided(column, 1, size), expected, side, "columns of " + name);
-        expect_times(asked, PairView::strided(strided, static_cast<std::ptrdiff_t>(pair_coordinates), size), expected, side, "strided " + name);
+        expect_times(asked, PairView::strided(strided, pair_stride, size), expected, side, "strided " + name);
+        expect_times(asked, PairView::strided(last, -pair_stride, size), expected, side, "backwards " + name);
         if (::testing::Test::HasFatalFailure()) return;
     }
 }
@@ -86,51 +93,80 @@ TEST(ArrayEnds, PackedPairsAreReadToTheirEndsAndNoFarther)
             expected.push_back({separation, t_max, answer_without_roots(kind, to_buffer(pairs).view(), options).toi});
         }
         for (const Side side : {Side::end, Side::beginning}) {
-            check_packed<double>(kind, pairs, expected, side);
-            check_packed<float>(kind, pairs, expected, side);
+            check_packed<double>(kind, pairs, expected, side, sizes());
+            check_packed<float>(kind, pairs, expected, side, sizes());
             if (HasFatalFailure()) return;
         }
     }
 }
 
-// Pairs of a mesh of n triangles and 3 n vertices, every one with the face that follows it.
-TEST(ArrayEnds, IndexedPairsAreReadToTheirEndsAndNoFarther)
+// So many pairs come in tiles of 4,096, where fewer come in tiles of 1,024.
+TEST(ArrayEnds, PairsOfLargeTilesAreReadToTheirEndsAndNoFarther)
 {
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        std::vector<oracle::Pair> pairs;
+        generate("f32_uniform", kind, 70, 16 * 4096 + 77, pairs);
+        const std::vector<Expected> expected{{0.0, 1.0, answer_without_roots(kind, to_buffer(pairs).view(), {}).toi}};
+        for (const Side side : {Side::end, Side::beginning}) {
+            check_packed<double>(kind, pairs, expected, side, {pairs.size() - 76, pairs.size()});
+            check_packed<float>(kind, pairs, expected, side, {pairs.size() - 76, pairs.size()});
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+/// Pairs of a mesh of n triangles and 3 n vertices: every triangle's first vertex and first edge with the face and edge that follow it.
+template <class Pair>
+void check_indexed()
+{
+    constexpr bool of_faces = std::is_same_v<Pair, VertexFace>;
     for (const std::size_t size : sizes()) {
         std::vector<oracle::Pair> source;
         generate("uniform", oracle::Kind::vertex_face, 60, size, source);
         std::vector<double> start(9 * size), end(9 * size);
-        std::vector<int> faces(3 * size);
-        std::vector<VertexFace> pairs(size);
+        std::vector<int> faces(3 * size), edges(2 * size);
+        std::vector<Pair> pairs(size);
         for (std::size_t i = 0; i < size; ++i) {
             for (std::size_t k = 0; k < 9; ++k) {
                 start[9 * i + k] = source[i][1 + k / 3][k % 3];
                 end[9 * i + k] = source[i][5 + k / 3][k % 3];
             }
             for (std::size_t k = 0; k < 3; ++k) faces[3 * i + k] = static_cast<int>(3 * i + k);
-            pairs[i] = {static_cast<int>(3 * i), static_cast<int>((i + 1) % size)};
+            for (std::size_t k = 0; k < 2; ++k) edges[2 * i + k] = static_cast<int>(3 * i + k);
+            pairs[i] = {static_cast<int>(of_faces ? 3 * i : i), static_cast<int>((i + 1) % size)};
         }
-        std::vector<double> expected;
-        const auto check = [&](const double* x0, const double* x1, const int* f, std::span<const VertexFace> asked, std::span<double> toi) {
-            const MovingMesh mesh{PositionView::rows(x0, 3 * size), PositionView::rows(x1, 3 * size), IndexView::rows(f, size, 3), IndexView{}};
-            for (const Isa isa : isas_to_test()) {
-                Options options;
-                options.isa = isa;
-                ASSERT_TRUE(time_of_impact(mesh, asked, options, toi).ok()) << size;
-                if (expected.empty()) expected.assign(toi.begin(), toi.end());
-                ASSERT_TRUE(std::equal(expected.begin(), expected.end(), toi.begin())) << size << ' ' << name(isa);
-            }
+        std::vector<Expected> expected{{0.0, 1.0, {}}, {1e-3, 1.0, {}}, {0.0, 0.37, {}}};
+        const auto check = [&](const double* x0, const double* x1, const int* f, const int* e, std::span<const Pair> asked, std::span<double> toi) {
+            const MovingMesh mesh{PositionView::rows(x0, 3 * size), PositionView::rows(x1, 3 * size), IndexView::rows(f, size, 3),
+                                  IndexView::rows(e, size, 2)};
+            for (const Isa isa : isas_to_test())
+                for (auto& [separation, t_max, times] : expected) {
+                    Options options;
+                    options.isa = isa;
+                    options.minimum_separation = separation;
+                    options.t_max = t_max;
+                    ASSERT_TRUE(time_of_impact(mesh, asked, options, toi).ok()) << size;
+                    if (times.empty()) times.assign(toi.begin(), toi.end());
+                    ASSERT_TRUE(std::equal(times.begin(), times.end(), toi.begin()))
+                        << size << ' ' << name(isa) << ' ' << separation << ' ' << t_max;
+                }
         };
         std::vector<double> anywhere(size);
-        check(start.data(), end.data(), faces.data(), pairs, anywhere);
+        check(start.data(), end.data(), faces.data(), edges.data(), pairs, anywhere);
         for (const Side side : {Side::end, Side::beginning}) {
             const GuardedArray<double> x0{start, side}, x1{end, side}, toi{size, side};
-            const GuardedArray<int> f{faces, side};
-            const GuardedArray<VertexFace> asked{pairs, side};
-            check(x0.data(), x1.data(), f.data(), {asked.data(), size}, {toi.data(), size});
-            if (HasFatalFailure()) return;
+            const GuardedArray<int> f{faces, side}, e{edges, side};
+            const GuardedArray<Pair> asked{pairs, side};
+            check(x0.data(), x1.data(), f.data(), e.data(), {asked.data(), size}, {toi.data(), size});
+            if (::testing::Test::HasFatalFailure()) return;
         }
     }
+}
+
+TEST(ArrayEnds, IndexedPairsAreReadToTheirEndsAndNoFarther)
+{
+    check_indexed<VertexFace>();
+    check_indexed<EdgeEdge>();
 }
 
 }  // namespace

@@ -14,16 +14,16 @@ namespace {
 
 constexpr double u = ErrorBounds::u;
 
-/// Error / bound of every coefficient of the three cross products r1 x r2, r2 x r3, r3 x r1 on the whole interval.
+/// Error / bound of every coefficient of the three cross products r1 x r2, r2 x r3, r3 x r1 on [0, to], where c.r ends.
 template <class C>
-double ratio_of_cross_products(const Input& in, const C& c, double quadratic)
+double ratio_of_cross_products(const Input& in, const C& c, double quadratic, double to = 1.0)
 {
     const ExactRelativeMotion exact{in.x.data(), in.t_max};
     double worst = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         const auto q = portable::cross_product(c.r, static_cast<int>(i), static_cast<int>(j));
-        const auto twice = twice_cross(exact.at(i, 0.0), exact.at(j, 0.0), exact.at(i, 1.0), exact.at(j, 1.0));
+        const auto twice = twice_cross(exact.at(i, 0.0), exact.at(j, 0.0), exact.at(i, to), exact.at(j, to));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double bound = quadratic * area_of(c.scale, axis);
             for (const Exact& error : {twice[0][axis] - Exact(2 * component(q.start, axis)),
@@ -36,13 +36,13 @@ double ratio_of_cross_products(const Input& in, const C& c, double quadratic)
 }
 
 template <class C>
-double ratio_of_sums(const Input& in, const C& c, double quadratic_sum)
+double ratio_of_sums(const Input& in, const C& c, double quadratic_sum, double to = 1.0)
 {
     const ExactRelativeMotion r{in.x.data(), in.t_max};
     const auto sum = portable::subtract_then_add(portable::cross_product(c.r, 1, 2), portable::cross_product(c.r, 0, 2),
                                                  portable::cross_product(c.r, 0, 1));
     const auto twice = twice_cross(r.at(2, 0.0) - r.at(1, 0.0), r.at(0, 0.0) - r.at(1, 0.0),
-                                   r.at(2, 1.0) - r.at(1, 1.0), r.at(0, 1.0) - r.at(1, 1.0));
+                                   r.at(2, to) - r.at(1, to), r.at(0, to) - r.at(1, to));
     double worst = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double bound = quadratic_sum * area_of(c.scale, axis);
@@ -54,10 +54,10 @@ double ratio_of_sums(const Input& in, const C& c, double quadratic_sum)
 }
 
 template <class C>
-double ratio_of_cubics(const Input& in, const C& c, double cubic)
+double ratio_of_cubics(const Input& in, const C& c, double cubic, double to = 1.0)
 {
     const auto f = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
-    const auto thrice = thrice_cubic({in.x.data(), in.t_max}, 0.0, 1.0);
+    const auto thrice = thrice_cubic({in.x.data(), in.t_max}, 0.0, to);
     const double bound = cubic * number(c.scale.volume);
     const Exact three = 3.0;
     return std::max({(thrice[0] - three * Exact(number(f.start))).magnitude_in(3 * bound),
@@ -91,6 +91,17 @@ auto in_single(Ratio ratio)
         const auto f = portable::coplanarity_cubic(c.r, portable::cross_product(c.r, 0, 1));
         return portable::in_lane_range(f, c.extents, c.bounds).value[0] ? ratio(in, c) : 0.0;
     };
+}
+
+/// The same of the motion up to in.a, as single precision interpolates it to see what is apart until the earliest contact so far.
+template <class Ratio>
+auto in_single_until(Ratio ratio)
+{
+    return in_single([=](const Input& in, ComputedInSingle c) {
+        const double to = static_cast<float>(in.a);
+        for (int i = 0; i < 3; ++i) c.r.end[i] = portable::position(c.r, i, portable::broadcast<Single>(to));
+        return ratio(in, c, to);
+    });
 }
 
 /// Of differences between components of r1, r2, r3. Over a whole step, where signs are certain and the bound is 0, as multiples of what
@@ -273,6 +284,15 @@ TEST(ErrorBounds, CoefficientsInSinglePrecision)
             return ratio_of_cubics(in, c, c.bounds.whole.cubic);
         }), shifts);
         expect_bound("gap, single", least, in_single(ratio_of_gaps), shifts);
+        expect_bound("quadratic on part, single", least, in_single_until([](const Input& in, const ComputedInSingle& c, double to) {
+            return ratio_of_cross_products(in, c, c.bounds.part.quadratic, to);
+        }), shifts);
+        expect_bound("quadratic_sum on part, single", least, in_single_until([](const Input& in, const ComputedInSingle& c, double to) {
+            return ratio_of_sums(in, c, c.bounds.part.quadratic_sum, to);
+        }), shifts);
+        expect_bound("cubic on part, single", least, in_single_until([](const Input& in, const ComputedInSingle& c, double to) {
+            return ratio_of_cubics(in, c, c.bounds.part.cubic, to);
+        }), shifts);
         expect_bound("cubic on halves, single", least, in_single(ratio_of_halved_cubics), shifts);
         expect_bound("quadratic on halves, single", least, in_single([](const Input& in, const ComputedInSingle& c) {
             return ratio_of_halved_quadratics(in, c, false);
