@@ -81,7 +81,7 @@ Status compact(PairKind kind, const CheckedSource& pairs, const Options& options
     Job job = no_job(kind);
     if (const Status status = prepare(kind, pairs, options, false, job); !status.ok()) return status;
 
-    const std::size_t most = pairs_per_tile(pairs.source.size);
+    const std::size_t most = pairs_per_tile(job);
     std::vector<TileContacts> tiles((pairs.source.size + most - 1) / most);
     Workers<CollectingWorker> workers;
     const Summary totals = for_each_tile(job, workers, whole_interval, [&](CollectingWorker& worker, std::size_t first, std::size_t count) {

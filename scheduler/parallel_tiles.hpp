@@ -62,12 +62,21 @@ private:
     tbb::combinable<Owner> owners_;
 };
 
-/// Of a call with `size` pairs. Few pairs are cut into smaller tiles, so that every thread gets its share of them.
-constexpr std::size_t pairs_per_tile(std::size_t size)
+/// Few pairs are cut into smaller tiles, so that every thread gets its share of them. The longer a pair may take, the smaller: of a thousand
+/// exact verdicts, one tile would keep one thread busy for a tenth of a second while the others wait.
+inline std::size_t pairs_per_tile(const Job& job)
 {
-    constexpr std::size_t least_tiles = 16, small_tile = tile_pairs / 4;
-    static_assert(small_tile % group_pairs == 0);
-    return size >= least_tiles * tile_pairs ? tile_pairs : small_tile;
+    constexpr std::size_t least_tiles = 16, factor = 4;
+    static_assert(tile_pairs == factor * factor * factor * group_pairs);
+    const std::size_t size = job.source.size;
+    std::size_t least = tile_pairs / factor;
+    if (job.exact || job.kernels == nullptr)
+        least = group_pairs;  // one pair at a time
+    else if (job.parameters.separation.distance > 0.0)
+        least = size < tile_pairs / factor ? group_pairs : factor * group_pairs;  // looks in lanes, of which each tile leaves some empty at its end
+    std::size_t pairs = tile_pairs;
+    while (pairs > least && size < least_tiles * pairs) pairs /= factor;
+    return pairs;
 }
 
 /// Runs every tile of the job up to a cutoff, cutoff(first) (see TileRequest; negative: the tile is left out), and
@@ -77,7 +86,7 @@ template <class Worker, class Cutoff, class Consume>
 Summary for_each_tile(const Job& job, Workers<Worker>& workers, Cutoff cutoff, Consume consume)
 {
     const std::size_t size = job.source.size;
-    const std::size_t most = pairs_per_tile(size), tiles = (size + most - 1) / most;
+    const std::size_t most = pairs_per_tile(job), tiles = (size + most - 1) / most;
     const auto run = [&](std::size_t tile, Worker& worker) {
         const std::size_t first = tile * most;
         const std::size_t count = std::min(most, size - first);

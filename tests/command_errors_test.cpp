@@ -455,9 +455,11 @@ TEST(CommandErrors, HelpThatNobodyGetsIsAnError)
 TEST(PieceSize, FollowsTheTime)
 {
     using tools::PieceSize;
-    PieceSize size;
+    PieceSize size{1};
+    EXPECT_EQ(size.pairs(), PieceSize::undivided);
+    for (int i = 0; i < 20; ++i) size.took(size.pairs(), 1.0);
     EXPECT_EQ(size.pairs(), PieceSize::least);
-    size.took(size.pairs(), 1.0);
+    size.took(size.pairs(), 0.05);
     EXPECT_EQ(size.pairs(), PieceSize::least);
     for (int i = 0; i < 20; ++i) size.took(size.pairs(), 1e-9);
     EXPECT_EQ(size.pairs(), PieceSize::most);
@@ -468,6 +470,11 @@ TEST(PieceSize, FollowsTheTime)
     size.took(PieceSize::most, 0.2);
     EXPECT_EQ(size.pairs(), PieceSize::most / 4);
     EXPECT_EQ(size.pairs() % 8, 0u);
+
+    // Where a pair takes a millisecond, as many as keep all threads busy.
+    PieceSize of_four{4};
+    for (int i = 0; i < 20; ++i) of_four.took(of_four.pairs(), 1e-3 * 64);
+    EXPECT_EQ(of_four.pairs(), 4 * PieceSize::undivided);
 }
 
 TEST(ProgressLine, FitsEveryTerminal)

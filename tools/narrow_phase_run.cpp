@@ -45,7 +45,7 @@ Isa resolve_isa(const Options& options)
 }
 
 NarrowPhaseRun::NarrowPhaseRun(const PairOptions& options, HitsFile* hits, Progress* progress)
-    : options_{options}, hits_{hits}, progress_{progress}
+    : options_{options}, hits_{hits}, progress_{progress}, piece_size_{tbb::this_task_arena::max_concurrency()}
 {
     totals_.summary.isa = resolve_isa(options.narrow_phase);
     totals_.threads = tbb::this_task_arena::max_concurrency();

@@ -23,29 +23,38 @@ class Progress;
 /// of packed pairs) that threads rarely wait for the last of them.
 inline constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
 
-/// How many pairs are answered at a time, so that Ctrl-C and the progress bar never wait long: a pair takes
-/// nanoseconds, or with exact verdicts up to a thousandth of a second.
+/// How many pairs are answered at a time, so that Ctrl-C and the progress bar hardly ever wait long: a pair takes nanoseconds, with exact
+/// verdicts some hundred microseconds, and a second where its coordinates are of extremely different sizes.
 class PieceSize {
 public:
-    /// Multiples of 8.
-    static constexpr std::size_t least = 256, most = chunk_pairs;
+    /// Multiples of 8. The library divides no fewer than `undivided` pairs among threads.
+    static constexpr std::size_t least = 8, undivided = 64, most = chunk_pairs;
+
+    explicit PieceSize(int threads) : threads_{static_cast<std::size_t>(threads)} {}
 
     [[nodiscard]] std::size_t pairs() const noexcept { return pairs_; }
 
     /// After a piece of `pairs` pairs.
     void took(std::size_t pairs, double seconds) noexcept
     {
-        if (seconds > 0.1) {
+        constexpr double longest = 0.1;
+        if (seconds > longest) {
             pairs_ = std::max(least, pairs_ / 4);
-        } else if (pairs >= pairs_ && seconds < 0.02) {
-            pairs_ = std::min(most, pairs_ * 4);
+        } else if (pairs >= pairs_ && pairs_ < most && seconds * 2 * busy(pairs_) / busy(2 * pairs_) < 0.8 * longest) {
+            pairs_ *= 2;
         }
     }
 
 private:
-    std::size_t pairs_ = least;
+    /// Threads that so many pairs keep busy. While there are others, twice the pairs take no longer.
+    [[nodiscard]] double busy(std::size_t pairs) const noexcept
+    {
+        return static_cast<double>(std::min(threads_, (pairs + undivided - 1) / undivided));
+    }
+
+    std::size_t threads_, pairs_ = undivided;
 };
-static_assert(PieceSize::least % 8 == 0 && PieceSize::most % PieceSize::least == 0);
+static_assert(PieceSize::least % 8 == 0 && PieceSize::undivided % PieceSize::least == 0 && PieceSize::most % PieceSize::undivided == 0);
 
 /// What is asked, for the report.
 struct Question {

@@ -87,7 +87,7 @@ class SceneRun {
 public:
     /// `hits`, `saved`: may be null.
     SceneRun(const SceneOptions& options, SceneHits* hits, SavedPairs* saved, StepProgress& progress)
-        : options_{options}, hits_{hits}, saved_{saved}, progress_{progress}
+        : options_{options}, hits_{hits}, saved_{saved}, progress_{progress}, piece_size_{tbb::this_task_arena::max_concurrency()}
     {
     }
 
