@@ -9,7 +9,7 @@ endfunction()
 foreach(test IN ITEMS npy_test rational_csv_test random_pairs_test random_counts_test mesh_io_test mesh_errors_test broad_phase_test make_scene_test)
   fastccd_add_tools_test(${test})
 endforeach()
-set(command_tests command_test command_errors_test scene_command_test scene_command_errors_test separation_command_test report_page_test)
+set(command_tests command_test command_errors_test scene_command_test scene_command_errors_test separation_command_test output_file_test report_page_test)
 if(NOT FASTCCD_SANITIZE)
   list(APPEND command_tests report_test)  # minutes of exact arithmetic; report_page_test runs the report itself
 endif()

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -69,6 +70,13 @@ std::filesystem::path follow_links(std::filesystem::path path)
     return path;
 }
 
+/// Whether something is mounted under this very name, as containers do with single files: no other file can take its place.
+bool is_mount_point(const std::filesystem::path& path)
+{
+    struct statx status {};
+    return ::statx(AT_FDCWD, path.c_str(), 0, STATX_TYPE, &status) == 0 && (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
+}
+
 /// A name in the same folder for what `target` gets. Long names are cut, so that there is room for the rest.
 std::filesystem::path temporary_name(const std::filesystem::path& target, unsigned attempt)
 {
@@ -120,7 +128,8 @@ OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
 
     struct stat existing {};
     const bool exists = ::stat(target_.c_str(), &existing) == 0;
-    if (!exists && errno == ELOOP) fail(target_, "cannot be created", errno);
+    // A shorter temporary name could be opened all the same.
+    if (!exists && (errno == ELOOP || errno == ENAMETOOLONG)) fail(target_, "cannot be created", errno);
     if (exists && S_ISDIR(existing.st_mode)) throw InputError(target_, "is a directory; name a file to write");
     if (exists && !S_ISREG(existing.st_mode)) {
         descriptor_ = open_in_place(target_);
@@ -129,6 +138,7 @@ OutputFile::OutputFile(const std::filesystem::path& target) : target_{target}
     if (exists) {
         // Renaming needs no permission on the file itself, but a write-protected file is meant to stay.
         if (::access(target_.c_str(), W_OK) != 0) fail(target_, "cannot be overwritten", errno);
+        if (is_mount_point(target_)) throw InputError(target_, "is a mount point, which no other file can replace; mount its folder instead");
     }
     target_ = follow_links(target_);
 
@@ -193,8 +203,11 @@ void OutputFile::commit()
 {
     close();
     if (temporary_.empty()) return;
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "cannot be created", errno);
-    temporary_.clear();
+    const std::filesystem::path complete = std::exchange(temporary_, {});
+    if (::rename(complete.c_str(), target_.c_str()) == 0) return;
+    const int error = errno;
+    throw InputError(target_, fmt::format("cannot be created: {}; all that was to be in it is in {}",
+                                          std::generic_category().message(error), complete.string()));
 }
 
 }  // namespace fastccd::tools

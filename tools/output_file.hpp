@@ -19,8 +19,8 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
 /// they stand; other devices and pipes are written directly, since nothing can be renamed over them.
 class OutputFile {
 public:
-    /// Opens the output. Throws InputError when it cannot be created, is a directory or is an
-    /// existing file without write permission.
+    /// Opens the output. Throws InputError when it cannot be created, is a directory, or is an
+    /// existing file without write permission or one that cannot be replaced.
     explicit OutputFile(const std::filesystem::path& target);
     ~OutputFile();
 
@@ -49,7 +49,8 @@ public:
     /// files that are to appear together, this frees the descriptors. Throws InputError.
     void close();
 
-    /// Makes the file appear under its name. Throws InputError.
+    /// Makes the file appear under its name. Throws InputError; if all is written and only the name cannot be given, the
+    /// temporary file stays, and the error names it.
     void commit();
 
 private:
