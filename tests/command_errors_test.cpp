@@ -173,6 +173,7 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
         {{"random", "--kind", "vf", "--save", directory / "pairs.CSV"}, "--save: what is written is .npy"},
         {{"run", "--kind", "vf"}, "FILE is required"},
+        {{"run", "", "--kind", "vf"}, "FILE: the value is empty"},
         {{"run", none}, "--kind is required"},
         {{"run", none, "--kind", "vf", "--range", "0:1"}, "--range: 0:1 ends beyond the last of 0 pairs"},
         {{"run", none, "--kind", "vf", "--range", "1:0"}, "--range: 1:0 begins after its end"},

@@ -135,7 +135,7 @@ TEST(SceneCommand, SavedPairsGiveTheSameBits)
     const std::vector<std::string> frames = make_scene(directory, "40", "5");
     ASSERT_EQ(frames.size(), 5U);
     const std::string pairs = directory / "new/pairs";
-    const std::string hits_path = directory / "hits.csv";
+    const std::string hits_path = directory / "new/hits.csv";  // in a folder that is made for the pairs
     const Json report = run_json(scene(frames, {"--hits", hits_path, "--save-pairs", pairs}));
     const std::vector<Hit> hits = read_hits(hits_path);
     EXPECT_EQ(report["contacts"], hits.size());

@@ -107,6 +107,7 @@ void add_make_scene_command(CLI::App& app)
                      "Folder for frame_000.ply and so on, created if need be; may\n"
                      "not hold other meshes")
         ->required()
+        ->check(not_empty())
         ->type_name("");
     // The generator's own limits; a single frame would be no step.
     add_whole_number(*command, "--size", options->size, 2, 4096, "The cloth has N x N vertices")

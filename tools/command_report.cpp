@@ -20,7 +20,7 @@ void add_report_command(CLI::App& app)
         app.add_subcommand("report", "Measure speed against error on this machine, as a page with pictures");
     const auto options = std::make_shared<report::ReportOptions>();
     command->add_option("--out", options->out, "Folder for report.html, report.json and the pictures (.svg)")
-        ->check(output_name())
+        ->check(output_folder_name())
         ->type_name("DIR")
         ->capture_default_str();
     add_whole_number(*command, "--pairs", options->pairs, 1, 1'000'000'000,

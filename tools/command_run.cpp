@@ -61,6 +61,7 @@ void add_run_command(CLI::App& app)
                      "without truth.\n"
                      "Pairs of several files are numbered on from one to the next")
         ->required()
+        ->check(not_empty())
         ->type_name("");
     command
         ->add_option("--range", options->range,

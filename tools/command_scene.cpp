@@ -44,15 +44,13 @@ void add_scene_command(CLI::App& app)
                      "each to the next is a step. PLY (ascii or binary) or .obj,\n"
                      "triangles only; lines (OBJ: l, PLY: edge) are edges, too")
         ->required()
+        ->check(not_empty())
         ->type_name("");
     command
         ->add_option("--save-pairs", options->save_pairs,
                      "Also write the candidates as .npy for `fastccd run`, 192 bytes\n"
                      "each, to DIR/step_000_vf.npy, step_000_ee.npy and so on")
-        ->check([](const std::string& path) {
-            return OutputFile::is_standard_output(path) ? "is to be a folder" : "";
-        })
-        ->check(output_name())
+        ->check(output_folder_name())
         ->type_name("DIR");
     add_search_options(*command, options->common);
     add_separation_options(*command, options->common);

@@ -205,6 +205,13 @@ CLI::Validator output_name()
     return not_empty() & not_like_an_option;
 }
 
+CLI::Validator output_folder_name()
+{
+    const CLI::Validator not_standard_output{
+        [](std::string& text) { return OutputFile::is_standard_output(text) ? std::string{"is to be a folder"} : std::string{}; }, std::string{}};
+    return output_name() & not_standard_output;
+}
+
 PairRange parse_range(const std::string& text, std::size_t pairs)
 {
     const std::size_t colon = text.find(':');

@@ -66,6 +66,9 @@ void refuse_overwriting_output(const CommonOptions& options, const std::filesyst
 /// `--hits --json` would write a file `--json`. What `-` alone means is up to the option.
 [[nodiscard]] CLI::Validator output_name();
 
+/// The same for folders alone, which standard output is none of.
+[[nodiscard]] CLI::Validator output_folder_name();
+
 /// Adds an option that takes a decimal number in [least, most]. (CLI11 by itself reads 010 as 8.)
 CLI::Option* add_whole_number(CLI::App& command, const std::string& option, std::uint64_t& value, std::uint64_t least,
                               std::uint64_t most, const std::string& description);

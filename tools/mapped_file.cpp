@@ -40,7 +40,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) : path_{path}
     struct stat status {};
     if (::fstat(file.value, &status) != 0) throw InputError(path, "cannot be read: " + reason(errno));
     if (S_ISDIR(status.st_mode)) throw InputError(path, "is a directory; name the files in it");
-    if (!S_ISREG(status.st_mode)) throw InputError(path, "is not a regular file; pairs are not read through pipes, write them to a file first");
+    if (!S_ISREG(status.st_mode)) throw InputError(path, "is not a regular file; what comes through a pipe has to be written to a file first");
     size_ = static_cast<std::size_t>(status.st_size);
     if (size_ == 0) return;  // an empty map is an error to the system, an empty file is none to us
     void* const map = ::mmap(nullptr, size_, PROT_READ, MAP_SHARED, file.value, 0);

@@ -196,10 +196,10 @@ SceneTotals answer_steps(const SceneOptions& options)
     totals.edges = frames.edges().size();
 
     const std::string& hits_path = options.common.hits;
+    std::optional<SavedPairs> saved;  // its folder may be created here, and be that of the hits
+    if (!options.save_pairs.empty()) saved.emplace(options.save_pairs, frames.step_count());
     std::optional<SceneHits> hits;
     if (!hits_path.empty()) hits.emplace(hits_path, options.common.proof);
-    std::optional<SavedPairs> saved;
-    if (!options.save_pairs.empty()) saved.emplace(options.save_pairs, frames.step_count());
     // Rows on a terminal are progress enough, and would run into the bar.
     const bool rows_on_terminal = OutputFile::is_standard_output(hits_path) && ::isatty(STDOUT_FILENO) != 0;
     StepProgress progress{frames.step_count(), !options.common.quiet && !rows_on_terminal};
