@@ -349,6 +349,7 @@ TEST(Report, NamesWhatIsWrong)
     expect({"report", "--draw", file, "--out", directory / "out"}, 1, "is no report.json");
     expect({"report", "--draw", directory.write("text.json", "{\"format\": \"1\"}"), "--out", directory / "out"}, 1, "text.json: is no report.json");
     expect({"report", "--out", ""}, 2, "--out: the value is empty");
+    expect({"report", "--out", "-"}, 2, "--out: is to be a folder");
     expect({"report", "--out", "--quick"}, 2, "--out: '--quick' begins like an option");
     for (const Arguments& measuring : {Arguments{"--quick"}, Arguments{"--pairs", "5"}, Arguments{"--data", directory / "."}}) {
         Arguments arguments{"report", "--draw", file, "--out", directory / "out"};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +13,7 @@
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace fastccd::testing {
 namespace {
@@ -46,7 +48,8 @@ std::vector<double> read_npy(const fs::path& file, const std::string& tail) {
     std::memcpy(values.data(), bytes.data() + begin, values.size() * sizeof(double));
     const std::size_t shape = header.find("'shape': (");
     if (shape == std::string::npos) fail(file, "no shape");
-    const std::size_t rows = std::stoul(header.substr(shape + 10));
+    std::size_t rows = 0;
+    if (std::from_chars(header.data() + shape + 10, header.data() + header.size(), rows).ec != std::errc{}) fail(file, "no number of rows in " + header);
     const std::size_t row_size = tail == ", 8, 3)" ? 24 : 3;
     if (values.size() != rows * row_size) fail(file, "the size does not match the shape");
     return values;

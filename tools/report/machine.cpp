@@ -1,11 +1,15 @@
 #include "machine.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -35,6 +39,24 @@ std::string operating_system()
     return ::uname(&names) == 0 ? names.sysname : "unknown";
 }
 
+/// The least limit on memory of the control group at `path`, a line of /proc/self/cgroup, and of those it is in. Within a container the
+/// path may be that outside of it, and only the root of what is mounted is the container's own.
+std::size_t group_limit(const std::filesystem::path& mounted, const std::filesystem::path& path, const char* file)
+{
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    std::filesystem::path group = mounted;
+    const auto look = [&] {
+        std::size_t limit = 0;
+        if (std::ifstream{group / file} >> limit) least = std::min(least, limit);  // "max" is none
+    };
+    look();
+    for (const std::filesystem::path& part : path.relative_path()) {
+        group /= part;
+        look();
+    }
+    return least;
+}
+
 }  // namespace
 
 std::string processor()
@@ -57,6 +79,22 @@ std::size_t system_memory()
 {
     const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
     return pages > 0 && size > 0 ? static_cast<std::size_t>(pages) * static_cast<std::size_t>(size) : 0;
+}
+
+std::size_t allowed_memory()
+{
+    std::size_t allowed = system_memory();
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) allowed = std::min(allowed, static_cast<std::size_t>(limit.rlim_cur));
+    std::ifstream groups("/proc/self/cgroup");  // number:controllers:path
+    for (std::string line; std::getline(groups, line);) {
+        const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+        if (second == std::string::npos) continue;
+        const std::string controllers = line.substr(first + 1, second - first - 1), path = line.substr(second + 1);
+        if (controllers.empty()) allowed = std::min(allowed, group_limit("/sys/fs/cgroup", path, "memory.max"));
+        if (controllers == "memory") allowed = std::min(allowed, group_limit("/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
+    }
+    return allowed;
 }
 
 std::size_t resident_memory()

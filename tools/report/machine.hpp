@@ -14,8 +14,10 @@ namespace fastccd::tools::report {
 /// Processor, memory, load, system, compiler, flags, instruction sets, version and commit of this build.
 [[nodiscard]] Json machine();
 
-/// Bytes of memory that the system has, and that this process has now; 0 where the system does not tell.
+/// Bytes of memory that the system has, that this process may have by its limits and by those of its control groups (of a container,
+/// say), and that it has now; 0 where the system does not tell.
 [[nodiscard]] std::size_t system_memory();
+[[nodiscard]] std::size_t allowed_memory();
 [[nodiscard]] std::size_t resident_memory();
 
 }  // namespace fastccd::tools::report

@@ -99,8 +99,8 @@ Json piece_by_piece(std::size_t count, int threads, ReportProgress& progress, st
 Json over_pairs(const Plan& plan, ReportProgress& progress)
 {
     const int threads = tbb::this_task_arena::max_concurrency();
-    // A quarter of the machine's memory: others live here too.
-    const std::size_t fits = system_memory() / 4 / (pair_coordinates * sizeof(double));
+    // A quarter of the memory: others live here too.
+    const std::size_t fits = allowed_memory() / 4 / (pair_coordinates * sizeof(double));
     std::vector<std::size_t> counts;
     for (std::size_t count = 1000; count <= std::max<std::size_t>(plan.most_pairs(), 1000); count *= 10)
         counts.push_back(count);
