@@ -54,7 +54,7 @@ FASTCCD_API Status time_of_impact(PairKind kind, const PairView& pairs, const Op
 
 /// Appends every pair in contact to `contacts`, in pair order, and the index of every invalid pair
 /// to `invalid` when given; on an error, nothing. O(pairs) over many calls with the same vectors, too; memory for twice
-/// what is appended, besides the vectors' own growth, and 10 bytes for every 1,024 pairs.
+/// what is appended, besides the vectors' own growth, and 10 bytes for every 1,024 pairs, 3 KB for fewer than 65,536.
 FASTCCD_API Status find_contacts(PairKind kind, const PairView& pairs, const Options& options, std::vector<Contact>& contacts,
                                  std::vector<std::size_t>* invalid = nullptr, Summary* summary = nullptr) noexcept;
 
