@@ -36,6 +36,7 @@ function(fastccd_add_isa_kernels target)
     list(APPEND optimised -fno-sanitize=pointer-overflow)
   endif()
 
+  # More than any function here comes to. Not large-function-growth: at 1,000,000 % g++ 12 refuses long functions again (an overflow, it seems).
   set(inline_limits --param=large-function-insns=100000000 --param=large-stack-frame=100000000)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     check_cxx_compiler_flag("${inline_limits}" FASTCCD_GNU_INLINE_LIMITS)  # they may change from version to version
@@ -61,8 +62,8 @@ function(fastccd_add_isa_kernels target)
       # Fewer registers in use at a time in the long straight lines of the certificates: up to 4 % faster, none slower.
       target_compile_options(fastccd_${isa} PRIVATE -flive-range-shrinkage)
       # However long the caller, small functions are inlined into it where it is first looked at. At the ordinary limits most of those of xsimd
-      # are left to the inliner of the whole unit: g++ 12 takes 1.5 to 2.2 times as long then, for code that is 0.2 to 1.4 % longer (loops over
-      # pairs have up to 0.2 % more or fewer instructions).
+      # are left to the inliner of the whole unit: g++ 12 takes 1.5 to 2 times as long then, for code that is 0.2 to 1.4 % longer (with AVX2,
+      # random pairs and scenes execute up to 0.2 % more or fewer instructions).
       if(FASTCCD_GNU_INLINE_LIMITS)
         target_compile_options(fastccd_${isa} PRIVATE ${inline_limits})
       endif()
