@@ -21,8 +21,11 @@
 #define FASTCCD_KERNEL_NAMESPACE portable
 #endif
 
+// Compilers left to themselves call too many of these functions. Whoever compiles kernels for their logic alone may define these two otherwise.
+#ifndef FASTCCD_INLINE
 #define FASTCCD_INLINE inline __attribute__((always_inline))
 #define FASTCCD_INLINE_LAMBDA __attribute__((always_inline))
+#endif
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 

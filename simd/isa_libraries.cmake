@@ -29,11 +29,11 @@ function(fastccd_add_isa_kernels target)
 
   set(optimised -O3)
   if(FASTCCD_SANITIZE)
-    set(optimised -O1)  # inlines as much, and takes clang a quarter to a half less time
-  endif()
-  if(FASTCCD_SANITIZE MATCHES address AND FASTCCD_SANITIZE MATCHES undefined)
-    # To ask before each access whether its address wraps around takes half of what is left. AddressSanitizer sees the access itself.
-    list(APPEND optimised -fno-sanitize=pointer-overflow)
+    # Functions are inlined as compilers see fit. Where each access is checked, whole stages as one function take them minutes: a kernel for AVX2
+    # two and a half times as long with AddressSanitizer, four times with ThreadSanitizer. Tests of kernels run up to two and a half times as
+    # long so. What instruction sets share is emitted for any of them: such builds are for the machine that makes them.
+    set(optimised -O2)
+    set(inlining FASTCCD_INLINE=inline FASTCCD_INLINE_LAMBDA=)
   endif()
 
   # More than any function here comes to. Not large-function-growth: at 1,000,000 % g++ 12 refuses long functions again (an overflow, it seems).
@@ -47,13 +47,13 @@ function(fastccd_add_isa_kernels target)
     target_include_directories(fastccd_${isa} PRIVATE
       ${PROJECT_SOURCE_DIR}/kernels/include ${PROJECT_SOURCE_DIR}/kernels ${PROJECT_SOURCE_DIR}/simd)
     target_compile_definitions(fastccd_${isa} PRIVATE
-      FASTCCD_KERNEL_ISA=${isa} FASTCCD_KERNEL_NAMESPACE=${isa}_lanes)
+      FASTCCD_KERNEL_ISA=${isa} FASTCCD_KERNEL_NAMESPACE=${isa}_lanes ${inlining})
     if(DEFINED arch_${isa})
       target_compile_definitions(fastccd_${isa} PRIVATE FASTCCD_KERNEL_ARCH=${arch_${isa}})
       target_link_libraries(fastccd_${isa} PRIVATE xsimd)
     endif()
-    # The kernels are optimised in every build type, instrumented or not: without inlining they would be useless, and
-    # functions shared between instruction sets would be emitted.
+    # The kernels are optimised in every build type: without inlining they would be useless, and functions shared between instruction sets
+    # would be emitted.
     target_compile_options(fastccd_${isa} PRIVATE ${optimised} ${flags_${isa}})
     # Whatever is linked before them: with functions at multiples of 16, packed scenes took up to 8 % longer in one program than in another.
     target_compile_options(fastccd_${isa} PRIVATE -falign-functions=64 -falign-loops=64)
