@@ -3,7 +3,7 @@
 function(fastccd_add_tools_test name)
   fastccd_add_test(${name} ${name}.cpp)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(${name} PRIVATE fastccd_tools nlohmann_json::nlohmann_json ${GMP_LIBRARY})
+  target_link_libraries(${name} PRIVATE fastccd_commands nlohmann_json::nlohmann_json ${GMP_LIBRARY})
 endfunction()
 
 foreach(test IN ITEMS npy_test rational_csv_test random_pairs_test random_counts_test mesh_io_test mesh_errors_test broad_phase_test make_scene_test)

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "common_options.hpp"
+#include "instruction_sets.hpp"
 #include "narrow_phase_run.hpp"
 #include "output_file.hpp"
 

@@ -34,7 +34,7 @@ void random_command(const RandomOptions& options)
         .pairs = options.pairs,
         .seed = options.seed};
     if (!options.save.empty()) refuse_overwriting_output(options.common, options.save);
-    run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
+    const Totals totals = run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
         std::optional<NpyWriter> saved;
         if (!options.save.empty()) {
             // Blocks can be used in place later, but have no way to say that the last is not full.
@@ -52,6 +52,7 @@ void random_command(const RandomOptions& options)
         }
         if (saved) saved->commit();
     });
+    print_report(options.common, question, totals);
 }
 
 }  // namespace

@@ -38,12 +38,13 @@ void run_command(const RunOptions& options)
         question.range = range;
         question.source += fmt::format(", pairs {}:{} of {}", range.begin, range.end, with_commas(files.size()));
     }
-    run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
+    const Totals totals = run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
         files.for_each_chunk(range, chunk_pairs,
                              [&run](const PairView& pairs, std::size_t first, std::span<const std::int8_t> truth) {
                                  run.answer(pairs, first, truth);
                              });
     });
+    print_report(options.common, question, totals);
 }
 
 }  // namespace

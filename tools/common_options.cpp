@@ -14,6 +14,7 @@
 
 #include <fastccd/isa.hpp>
 
+#include "instruction_sets.hpp"
 #include "output_file.hpp"
 
 namespace fastccd::tools {
@@ -233,17 +234,6 @@ PairRange parse_range(const std::string& text, std::size_t pairs)
 const char* kind_name(PairKind kind) noexcept
 {
     return kind == PairKind::vertex_face ? "vertex-face" : "edge-edge";
-}
-
-std::string available_isas()
-{
-    std::string names;
-    for (const Isa isa : all_isas) {
-        if (!isa_available(isa)) continue;
-        if (!names.empty()) names += ", ";
-        names += name(isa);
-    }
-    return names;
 }
 
 }  // namespace fastccd::tools

@@ -88,10 +88,4 @@ struct PairRange {
 /// "vertex-face" or "edge-edge".
 [[nodiscard]] const char* kind_name(PairKind kind) noexcept;
 
-/// The names of all instruction sets that can be chosen here, as "scalar, sse2, avx2".
-[[nodiscard]] std::string available_isas();
-
-/// Instruction sets in ascending width.
-inline constexpr Isa all_isas[] = {Isa::scalar, Isa::sse2, Isa::neon, Isa::avx2, Isa::avx512};
-
 }  // namespace fastccd::tools

@@ -14,10 +14,10 @@
 #include <fastccd/isa.hpp>
 
 #include "hits_file.hpp"
+#include "instruction_sets.hpp"
 #include "interrupt.hpp"
 #include "pair_slice.hpp"
 #include "progress.hpp"
-#include "report_totals.hpp"
 #include "threads.hpp"
 
 namespace fastccd::tools {
@@ -120,10 +120,10 @@ void NarrowPhaseRun::compare(std::span<const std::int8_t> truth)
     totals.false_alarms += contacts_.size() - found;
 }
 
-void run_narrow_phase(const PairOptions& options, const Question& question,
-                      const std::function<void(NarrowPhaseRun&)>& feed)
+Totals run_narrow_phase(const PairOptions& options, const Question& question,
+                        const std::function<void(NarrowPhaseRun&)>& feed)
 {
-    std::optional<Totals> totals;
+    Totals totals;
     on_threads(options.threads, [&] {
         std::optional<HitsFile> hits;
         if (!options.hits.empty()) hits.emplace(options.hits, options.proof);
@@ -136,7 +136,7 @@ void run_narrow_phase(const PairOptions& options, const Question& question,
         if (hits) hits->commit();
         totals = run.totals();
     });
-    print_report(options, question, *totals);
+    return totals;
 }
 
 }  // namespace fastccd::tools

@@ -122,9 +122,8 @@ private:
 };
 
 /// Runs `feed`, which calls answer() for all pairs of `question`, on the threads asked for, with
-/// progress bar and hits file; then prints the report. Nothing stays behind under the name of the hits
-/// file if any of it throws.
-void run_narrow_phase(const PairOptions& options, const Question& question,
-                      const std::function<void(NarrowPhaseRun&)>& feed);
+/// progress bar and hits file. Nothing stays behind under the name of the hits file if any of it throws.
+[[nodiscard]] Totals run_narrow_phase(const PairOptions& options, const Question& question,
+                                      const std::function<void(NarrowPhaseRun&)>& feed);
 
 }  // namespace fastccd::tools

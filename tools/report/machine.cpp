@@ -16,7 +16,7 @@
 #include <fastccd/isa.hpp>
 #include <fastccd_commit.hpp>
 
-#include "../common_options.hpp"
+#include "../instruction_sets.hpp"
 
 namespace fastccd::tools::report {
 namespace {

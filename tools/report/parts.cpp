@@ -5,7 +5,7 @@
 
 #include <fastccd/isa.hpp>
 
-#include "../common_options.hpp"
+#include "../instruction_sets.hpp"
 
 namespace fastccd::tools::report {
 
