@@ -120,7 +120,7 @@ TEST(SceneCommand, ReportsStepsAndTotals)
     EXPECT_EQ(run_json(scene(frames, {"--t-max", "0.49"}))["contacts"], 0);
     EXPECT_EQ(run_json(scene(frames, {"--t-max", "0.51"}))["contacts"], 1);
     const Outcome text = run(scene(frames));
-    EXPECT_NE(text.out.find("all              1 contacts in "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("all              1 contact in "), std::string::npos) << text.out;
     EXPECT_NE(text.out.find(" in step 0, vertex 3 and face 0 1 2\n"), std::string::npos) << text.out;
     EXPECT_EQ(text.error, "");
     EXPECT_EQ(run(scene(frames, {"--quiet"})).out, "");

@@ -82,9 +82,9 @@ void make_scene_command(const MakeSceneOptions& options)
     const auto path = [&](const std::string& name) { return (out_dir / name).string(); };
     const std::string folder = (out_dir / "").parent_path().string();
     const std::string text =
-        fmt::format("wrote {} frames, {} to {}: {} vertices, {} faces each\nnow:  fastccd scene {}/frame_*.ply\n", frames,
+        fmt::format("wrote {} frames, {} to {}: {}, {} each\nnow:  fastccd scene {}/frame_*.ply\n", frames,
                     path(frame_name(0, frames)), path(frame_name(frames - 1, frames)),
-                    with_commas(scene.positions(0).size() / 3), with_commas(scene.faces().size() / 3),
+                    counted(scene.positions(0).size() / 3, "vertex", "vertices"), counted(scene.faces().size() / 3, "face"),
                     quoted(folder.starts_with('-') ? "./" + folder : folder));
     write_all(STDOUT_FILENO, text, "standard output");
 }

@@ -30,7 +30,7 @@ struct RandomOptions {
 void random_command(const RandomOptions& options)
 {
     const Question question{
-        .source = fmt::format("{} random pairs in the unit cube, seed {}", with_commas(options.pairs), options.seed),
+        .source = fmt::format("{} in the unit cube, seed {}", counted(options.pairs, "random pair"), options.seed),
         .pairs = options.pairs,
         .seed = options.seed};
     if (!options.save.empty()) refuse_overwriting_output(options.common, options.save);

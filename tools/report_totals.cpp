@@ -56,6 +56,12 @@ std::string with_commas(std::size_t number)
     return text;
 }
 
+std::string counted(std::size_t number, std::string_view thing, std::string_view plural)
+{
+    if (number == 1) return fmt::format("1 {}", thing);
+    return plural.empty() ? fmt::format("{} {}s", with_commas(number), thing) : fmt::format("{} {}", with_commas(number), plural);
+}
+
 std::string text_report(const PairOptions& options, const Question& question, const Totals& totals)
 {
     const Summary& sum = totals.summary;
@@ -83,15 +89,15 @@ std::string text_report(const PairOptions& options, const Question& question, co
         line("earliest", fmt::format("toi {:.17g} in pair {}", sum.earliest.toi, pair_name(question, sum.earliest.pair)));
     }
     if (totals.truth) {
-        line("missed", fmt::format("{} of {} pairs with a known answer{}", with_commas(totals.truth->missed),
-                                   with_commas(totals.truth->pairs), totals.truth->missed > 0 ? "; is --kind right?" : ""));
+        line("missed", fmt::format("{} of {} with a known answer{}", with_commas(totals.truth->missed),
+                                   counted(totals.truth->pairs, "pair"), totals.truth->missed > 0 ? "; is --kind right?" : ""));
         line("false alarms", with_commas(totals.truth->false_alarms));
     }
     line("invalid", sum.invalid == 0 ? "0" : fmt::format("{}  ({})", with_commas(sum.invalid), invalid_pairs(question, totals)));
-    line("certified search", fmt::format("{} pairs{}", with_commas(sum.scalar_pairs), share(sum.scalar_pairs, sum.pairs)));
-    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {} thread{})", totals.seconds,
-                                     pairs_per_second(totals) * 1e-6, name(sum.isa), totals.threads,
-                                     totals.threads == 1 ? "" : "s"));
+    line("certified search", counted(sum.scalar_pairs, "pair") + share(sum.scalar_pairs, sum.pairs));
+    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {})", totals.seconds,
+                                     pairs_per_second(totals) * 1e-6, name(sum.isa),
+                                     counted(static_cast<std::size_t>(totals.threads), "thread")));
     return fmt::to_string(out);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "narrow_phase_run.hpp"
 
@@ -21,5 +22,8 @@ void print_report(const PairOptions& options, const Question& question, const To
 
 /// 1234567 as "1,234,567".
 [[nodiscard]] std::string with_commas(std::size_t number);
+
+/// "1 contact", "1,234 contacts"; of what has another plural, that too.
+[[nodiscard]] std::string counted(std::size_t number, std::string_view thing, std::string_view plural = {});
 
 }  // namespace fastccd::tools

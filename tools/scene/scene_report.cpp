@@ -41,6 +41,17 @@ std::string what_touches(const SceneContact& contact)
                : fmt::format("edges {} {} and {} {}", v[0], v[1], v[2], v[3]);
 }
 
+std::string contacts_in_candidates(const KindTotals& totals)
+{
+    return fmt::format("{} in {}", counted(totals.contacts, "contact"), counted(totals.candidates, "candidate"));
+}
+
+std::string left_out(const SceneTotals& totals)
+{
+    return fmt::format("{} with NaN or infinity, left out with all that {} part of", counted(totals.invalid.size(), "vertex", "vertices"),
+                       totals.invalid.size() == 1 ? "it is" : "they are");
+}
+
 std::string invalid_vertices(const SceneTotals& totals)
 {
     const std::size_t named = std::min(totals.invalid.size(), most_invalid_vertices_named);
@@ -100,10 +111,9 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
     };
     const Options& asked = options.common.narrow_phase;
     const std::size_t steps = totals.steps.size();
-    line("scene", fmt::format("{} to {}, {} step{}", totals.frames.front(), totals.frames.back(), with_commas(steps),
-                              steps == 1 ? "" : "s"));
-    line("mesh", fmt::format("{} vertices, {} faces, {} edges", with_commas(totals.vertices),
-                             with_commas(totals.faces), with_commas(totals.edges)));
+    line("scene", fmt::format("{} to {}, {}", totals.frames.front(), totals.frames.back(), counted(steps, "step")));
+    line("mesh", fmt::format("{}, {}, {}", counted(totals.vertices, "vertex", "vertices"), counted(totals.faces, "face"),
+                             counted(totals.edges, "edge")));
     line("asked", fmt::format("t in [0, {}] of every step, tolerance {}{}{}", asked.t_max, asked.tolerance,
                               asked.reference ? ", certified search on every pair" : "",
                               asked.exact ? ", exact verdict" : "") +
@@ -127,10 +137,9 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
     for (const PairKind kind : both_kinds) {
         const KindTotals sums = sum(totals, kind);
         all = all + sums;
-        line(kind_name(kind), fmt::format("{} contacts in {} candidates", with_commas(sums.contacts),
-                                          with_commas(sums.candidates)));
+        line(kind_name(kind), contacts_in_candidates(sums));
     }
-    line("all", fmt::format("{} contacts in {} candidates", with_commas(all.contacts), with_commas(all.candidates)));
+    line("all", contacts_in_candidates(all));
     line("  proven", with_commas(all.proven));
     line("  possible", with_commas(all.contacts - all.proven));
     if (asked.minimum_separation > 0.0) line("  at the start", with_commas(all.at_start));
@@ -138,17 +147,14 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
         line("earliest", fmt::format("toi {:.17g} in step {}, {}", all.earliest->toi, all.earliest->step,
                                      what_touches(*all.earliest)));
     }
-    line("invalid", totals.invalid.empty()
-                        ? "0 vertices"
-                        : fmt::format("{} vertices with NaN or infinity, left out with all that they are part of",
-                                      with_commas(totals.invalid.size())));
-    line("certified search", fmt::format("{} pairs", with_commas(all.scalar_pairs)));
+    line("invalid", totals.invalid.empty() ? "0 vertices" : left_out(totals));
+    line("certified search", counted(all.scalar_pairs, "pair"));
     line("reading", fmt::format("{:.3g} s", totals.read_seconds));
     line("broad phase", fmt::format("{:.3g} s, {:.3g} million candidates/s", all.broad_seconds,
                                     rate(all.candidates, all.broad_seconds) * 1e-6));
-    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {} thread{})", all.narrow_seconds,
-                                     rate(all.candidates, all.narrow_seconds) * 1e-6, name(totals.isa), totals.threads,
-                                     totals.threads == 1 ? "" : "s"));
+    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {})", all.narrow_seconds,
+                                     rate(all.candidates, all.narrow_seconds) * 1e-6, name(totals.isa),
+                                     counted(static_cast<std::size_t>(totals.threads), "thread")));
     return fmt::to_string(out);
 }
 
@@ -199,10 +205,7 @@ void print_scene_report(const SceneOptions& options, const SceneTotals& totals)
     }
     if (!totals.invalid.empty()) {
         write_all(STDERR_FILENO,
-                  fmt::format("fastccd: warning: {} vert{} with NaN or infinity, left out with all that {} part of: {}\n",
-                              with_commas(totals.invalid.size()), totals.invalid.size() == 1 ? "ex" : "ices",
-                              totals.invalid.size() == 1 ? "it is" : "they are", invalid_vertices(totals)),
-                  "standard error");
+                  fmt::format("fastccd: warning: {}: {}\n", left_out(totals), invalid_vertices(totals)), "standard error");
     }
 }
 
