@@ -30,8 +30,8 @@ function(fastccd_add_isa_kernels target)
   set(optimised -O3)
   if(FASTCCD_SANITIZE)
     # Functions are inlined as compilers see fit. Where each access is checked, whole stages as one function take them minutes: a kernel for AVX2
-    # two and a half times as long with AddressSanitizer, four times with ThreadSanitizer. Tests of kernels run up to two and a half times as
-    # long so. What instruction sets share is emitted for any of them: such builds are for the machine that makes them.
+    # takes clang 14 with AddressSanitizer 38 s so instead of 205, g++ 12 with ThreadSanitizer some 30 instead of 116. Tests of kernels run up to
+    # two and a half times as long. What instruction sets share is emitted for any of them: such builds are for the machine that makes them.
     set(optimised -O2)
     set(inlining FASTCCD_INLINE=inline FASTCCD_INLINE_LAMBDA=)
   endif()
