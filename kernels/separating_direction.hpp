@@ -99,7 +99,8 @@ FASTCCD_INLINE ShortestVector<L> between_edges(const Vector3<L> (&r)[3], const V
 }
 
 /// Square of the distance from the origin to the point where the normal through it meets the triangle; +infinity if it
-/// does not. The weights of the corners need not be accurate: with any positive ones it is a point of the triangle.
+/// does not. The weights of the corners need not be accurate: with any positive ones it is a point of the triangle. +infinity or NaN, too, where
+/// their sum is so small (2^-1024 and less) that its reciprocal is infinite.
 template <class L>
 FASTCCD_INLINE L square_to_inside(const Vector3<L> (&r)[3], const Vector3<L>& normal)
 {
@@ -174,7 +175,7 @@ FASTCCD_INLINE L square_distance(const Vector3<L> (&r)[3], const Separation<L>& 
     if constexpr (kind == PairKind::edge_edge)
         return seen.square_to_side;
     else
-        return min(seen.square_to_side, square_to_inside(r, cross(subtract(r[1], r[0]), subtract(r[2], r[1]))));
+        return min(square_to_inside(r, cross(subtract(r[1], r[0]), subtract(r[2], r[1]))), seen.square_to_side);  // of a NaN, the second
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

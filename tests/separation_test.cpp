@@ -230,6 +230,19 @@ TEST(Separation, NormalsThatVanish)
     EXPECT_LT(counts.at_start, counts.reported);
 }
 
+/// The vertex meets a face so small that the weights of its corners add up to 2^-1024 and less, the reciprocal of which is infinite.
+TEST(Separation, FacesAsSmallAsTheRootOfWhatVanishes)
+{
+    Counts counts;
+    for (int exponent = -250; exponent >= -270; --exponent) {
+        const double h = std::scalbn(1.0, exponent);
+        const oracle::Pair pair{{{0, 0, 0}, {2, h, 0}, {2, -h, h}, {2, -h, -h}, {0, 0, 0}, {0, h, 0}, {0, -h, h}, {0, -h, -h}}};
+        check(oracle::Kind::vertex_face, pair, options_for(0.5), counts);
+    }
+    expect_close("tiny faces", counts);
+    EXPECT_EQ(counts.proven, counts.pairs);
+}
+
 /// The nearest corner belongs to a side 10^6 times as long as it is far away.
 TEST(Separation, CornersOfLongSides)
 {
