@@ -117,6 +117,13 @@ FASTCCD_INLINE QuadraticVector<L> normal_between(const Vector3<L> (&a)[3], const
         return cross_product(RelativeMotion<L>{{a[0], subtract(a[1], a[2])}, {b[0], subtract(b[1], b[2])}}, 0, 1);
 }
 
+/// |v|, but for rounding not below it. Squares may underflow, each by 2^-1075: a root errs by at most 2^-536 then.
+template <class L>
+FASTCCD_INLINE L length_from_above(const Vector3<L>& v)
+{
+    return sqrt(dot(v, v)) + broadcast<L>(0x1p-500);
+}
+
 /// Between two times, by f alone, with |n| followed: f - d |n| is positive where the coefficients of f exceed d times those of
 /// sum_i B_i |n_i|, of degree 2 raised to 3. Where the primitives approach face to vertex or edge across edge, their distance is |f| / |n|,
 /// so this holds until shortly before they come within d, however fast n turns. `extents`: of the whole motion.
@@ -126,9 +133,7 @@ FASTCCD_INLINE LaneMask<L> farther_between(const Vector3<L> (&a)[3], const Vecto
 {
     const QuadraticVector<L> n = normal_between<kind>(a, b);
     const CoplanarityCubic<L> f = coplanarity_cubic(RelativeMotion<L>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}}, n);  // n . r3
-    // Squares may underflow, each by 2^-1075: a root errs by at most 2^-536 then.
-    const auto length = [](const Vector3<L>& v) FASTCCD_INLINE_LAMBDA { return sqrt(dot(v, v)) + broadcast<L>(0x1p-500); };
-    const L at_a = length(n.start), at_b = length(n.end), twice_middle = length(n.twice_middle);
+    const L at_a = length_from_above(n.start), at_b = length_from_above(n.end), twice_middle = length_from_above(n.twice_middle);
     const Scales<L> scale = scales(extents);
     const L d = broadcast<L>(distance), three = broadcast<L>(3.0);
     const L bound = broadcast<L>(bounds.volume_between()) * scale.volume + (d * broadcast<L>(bounds.normal_between())) * largest_area(scale);

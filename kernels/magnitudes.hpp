@@ -21,7 +21,8 @@
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
 /// Share of the bound from extents that is kept, against products of tiny components that underflow: volumes are at least
-/// smallest_volume here (the search's extents at least 2^-100, scaling.hpp), so this is far above 2^-975 (length_floor).
+/// smallest_volume here (the search's extents at least 2^-100, scaling.hpp), so this is far above 2^-975 (length_floor). An axis without any
+/// extent has that of the floor: there, all products are exactly 0.
 inline constexpr double underflow_share = 0x1p-40;
 
 template <class L>

@@ -38,6 +38,11 @@ FASTCCD_INLINE PolynomialsOf<L> restricted_to(const PolynomialsOf<L>& whole, L a
             const Linear<L> g = on_interval(linear_of(of_whole), a, b);
             gap = {g.c0, g.c1, of_whole.bound};
         });
+    if constexpr (kind == PairKind::vertex_face) {  // which has no fourth ones
+        const L zero = broadcast<L>(0.0);
+        for (auto& edges : part.edges) edges[3] = {zero, zero, zero, zero};
+        for (auto& gaps : part.gaps) gaps[3] = {zero, zero, zero};
+    }
     return part;
 }
 

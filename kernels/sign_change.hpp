@@ -2,8 +2,8 @@
 //
 // The roots of f' cut [0, 1], or a part of it, into at most three monotone pieces; a piece holds a root of f if and only
 // if the signs at its ends differ. With rounding: error_bound.hpp (monotone_piece) shows that end values
-// beyond +-threshold on one side prove that there is no root in the piece. A value within the threshold
-// leaves the pair undecided: it goes to the certified search.
+// beyond +-threshold on one side prove that there is no root in the piece. Where a value is within the
+// threshold, parts of the interval are asked about next (simd/root_stages.hpp), and then the certified search or its own text in lanes.
 #pragma once
 
 #include <bernstein.hpp>

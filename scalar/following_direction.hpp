@@ -18,6 +18,7 @@
 #include <cmath>
 
 #include <coplanarity.hpp>
+#include <farther_certificates.hpp>
 #include <separation_certificate.hpp>
 
 namespace fastccd::scalar {
@@ -61,7 +62,9 @@ public:
         for (int i = 0; i < 4; ++i) {
             const Vector3<double>& v = n_[i];
             const double spread = (std::abs(v.x) * extents.x + std::abs(v.y) * extents.y) + std::abs(v.z) * extents.z;
-            threshold[i] = (parameters.threshold * length(v) + bounds.height_following(kind) * spread) + separation_floor;
+            const double length = length_from_above(v);
+            // What may underflow by 2^-1074 are components, and a height is off by that times |v| then, which is 1 elsewhere.
+            threshold[i] = (parameters.threshold * length + bounds.height_following(kind) * spread) + separation_floor * std::max(length, 1.0);
         }
         const Coefficients needed = times_linear([&](int i, int) { return threshold[i]; });
         bool all = true;
@@ -139,14 +142,11 @@ private:
                  third(cross(e.start, q.end), cross(e.end, q.twice_middle)), cross(e.end, q.end)}};
     }
 
-    /// Not below |v|. Products may underflow, each by 2^-1075: the root then errs by at most 2^-536.
-    static double length(const Vector3<double>& v) { return std::sqrt(dot(v, v)) + 0x1p-500; }
-
     void consider(const Cubic& v)
     {
         const Vector3<double> at_middle = scaled(add(add(v.n[0], v.n[3]), scaled(add(v.n[1], v.n[2]), 3.0)), 0.125);
         const Gaps<double> gap = gaps<kind>(at_middle, middle_);
-        const double distance = std::max(gap.along, gap.against) / length(at_middle);
+        const double distance = std::max(gap.along, gap.against) / length_from_above(at_middle);
         if (!(largest_distance_ < distance)) return;
         largest_distance_ = distance;
         for (int i = 0; i < 4; ++i) n_[i] = gap.along < gap.against ? subtract({0.0, 0.0, 0.0}, v.n[i]) : v.n[i];

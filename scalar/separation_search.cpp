@@ -32,7 +32,9 @@ RelativeMotion<double> scaled_motion(const double* coordinates, SearchParameters
     RelativeMotion<double> r{};
     if (exponent == std::numeric_limits<int>::min()) return r;
     // What follows from d is formed anew: of a subnormal one it was rounded, of one next to the largest double it was infinite.
-    parameters.separation = SeparationParameters{std::scalbn(parameters.separation.distance, -exponent), parameters.separation.tolerance};
+    // Beyond 2^200 of the pair's size all is within it, so that it need not become infinite.
+    parameters.separation = SeparationParameters{std::min(std::scalbn(parameters.separation.distance, -exponent), 0x1p200),
+                                                 parameters.separation.tolerance};
     double start[3][3], end[3][3];
     for (int axis = 0; axis < 3; ++axis) axes[axis].put(start[axis], end[axis], parameters.t_max, -exponent);
     for (int i = 0; i < 3; ++i) {

@@ -373,7 +373,7 @@ mutant 'separation: nothing follows' scalar/separation_search.cpp 's/outcome\.le
 mutant 'separation: lanes follow nothing' kernels/separation_steps.hpp 's/most_lane_looks = 64/most_lane_looks = 1e9/' separation_test separation_bits_test
 mutant 'separation: lanes keep what is to be followed' simd/separation_pipeline.hpp 's/if \(left != 0\) leave_undecided\(scratch_, record\.pair, left\);//' separation_bits_test
 mutant 'separation: following, middle not asked' $following 's/k < 5; \+\+k\) all/k < 5; k += 2) all/' error_bounds_test
-mutant 'separation: following, d not asked for' $following 's/parameters\.threshold \* length\(v\) \+/0.0 * length(v) +/' error_bounds_test
+mutant 'separation: following, d not asked for' $following 's/parameters\.threshold \* length \+/0.0 * length +/' error_bounds_test
 mutant 'separation: following goes over the window' scalar/separation_search.cpp 's/time = past_window\(pair, end\)/time = past_window(pair, end + stretch)/' separation_test
 mutant 'separation: normals that vanish' kernels/separating_direction.hpp 's/less\(broadcast<L>\(smallest_square\), normal_square\) &\s*//' error_bounds_test
 mutant 'separation: corners from the far end' kernels/separating_direction.hpp 's/less\(squares\[j\], squares\[i\]\)/less(squares[i], squares[j])/' error_bounds_test

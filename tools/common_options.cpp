@@ -85,7 +85,7 @@ void add_search_options(CLI::App& command, CommonOptions& options)
 {
     command
         .add_option("--tolerance", options.narrow_phase.tolerance,
-                    "Width of the time interval in which the first contact is\nlocated; the whole step is 1. Below 2^-50 as 2^-50")
+                    "Width of the time interval in which the first contact is\nlocated; the whole step is 1. At least 2^-50 of the time searched")
         ->check(number_check("a positive finite number", [](double x) { return x > 0 && std::isfinite(x); }))
         ->type_name("T")
         ->capture_default_str();

@@ -31,7 +31,7 @@ struct Options {
     /// it is a regular one, at which the primitives cross beyond rounding. Where they only touch, toi may be earlier: the
     /// first time at which rounding cannot exclude contact (README, Accuracy). Below about 1e-12 regular ones may be earlier than
     /// this, too, as the sign of their cubic is lost in rounding so close to the root: random pairs by less than 1e-12.
-    /// Positive and finite; values below 2^-50 act as 2^-50.
+    /// Positive and finite; values below 2^-50 t_max act as that.
     double tolerance = 1e-9;
     /// Contact is searched in [0, t_max], 0 < t_max <= 1.
     double t_max = 1.0;
@@ -40,7 +40,7 @@ struct Options {
     /// Run the certified search alone on every pair. Slower; the results are the same bits.
     bool reference = false;
     /// Settle by rational arithmetic every contact that rounding leaves possible but not proven, or does not locate
-    /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50
+    /// within the tolerance: all contacts reported are contacts then, and toi is early by less than the tolerance (2^-50 t_max
     /// at least) and a rounding (2^-51), and 0 for contact at t = 0 alone (or before 2^-1071). Costs allocations and some ten to
     /// some hundred microseconds for each such pair, milliseconds for a few, and about a second (the longest found) if its
     /// coordinates' exponents spread over the whole range of double. Needs a build with GMP, which ends the program if memory runs out.
