@@ -11,6 +11,7 @@
 #include <c_structs.hpp>
 #include <fastccd/fastccd.hpp>
 #include <guarded.hpp>
+#include <parallel_ranges.hpp>
 
 namespace fastccd {
 
@@ -94,6 +95,7 @@ int with_threads(int threads, const Call& call)
     if (threads == 0 || threads >= tbb::this_task_arena::max_concurrency()) return call();
     int error = FASTCCD_OK;
     const Status status = guarded([&] {
+        enter_arena();
         tbb::task_arena{threads}.execute([&] { error = call(); });
         return Status{};
     });
@@ -156,7 +158,7 @@ int earliest(const Request& request, fastccd_contact* contact, const Call& call)
     return report(status, request.fault);
 }
 
-/// `call(options, step)`, the step that candidates of both kinds allow. `*step` is written whatever happens, 0 on every error.
+/// `call(options, step)`, the step that candidates of both kinds allow. `*step` is written if its size is set, 0 on every error.
 template <class Call>
 int collision_free(const void* vertex_face, std::size_t vertex_face_count, const void* edge_edge, std::size_t edge_edge_count,
                    const fastccd_options* options, fastccd_step* step, const Call& call)
@@ -249,7 +251,7 @@ const char* fastccd_message(int error)
 {
     if (error == FASTCCD_BAD_ARGUMENT)
         return "a pointer is null, a kind is unknown, the number of threads is negative, the size of a struct is not set, "
-               "or a reserved option is not 0";
+               "or a field that is reserved, or that this version does not know, is not 0";
     if (error < FASTCCD_OK || error > FASTCCD_BAD_EDGE_INDEX) return "unknown error";
     return message(static_cast<Error>(error));
 }

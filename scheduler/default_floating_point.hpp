@@ -17,11 +17,28 @@ public:
     DefaultFloatingPoint& operator=(const DefaultFloatingPoint&) = delete;
 
 private:
+    friend class CallersFloatingPoint;
 #ifdef __SSE2__
-    unsigned before_;  ///< MXCSR. Nothing here uses the x87 registers, whose environment takes much longer to save.
+    using Environment = unsigned;  ///< MXCSR. Nothing here uses the x87 registers, whose environment takes much longer to save.
 #else
-    std::fenv_t before_;
+    using Environment = std::fenv_t;
 #endif
+
+    Environment before_;
+    bool outermost_;  ///< Of this thread.
+};
+
+/// While it lives, this thread has the environment that it had before the outermost DefaultFloatingPoint on it, if there is one: for what
+/// remembers the environment in which it is made, and will be the caller's own.
+class CallersFloatingPoint {
+public:
+    CallersFloatingPoint() noexcept;
+    ~CallersFloatingPoint();
+    CallersFloatingPoint(const CallersFloatingPoint&) = delete;
+    CallersFloatingPoint& operator=(const CallersFloatingPoint&) = delete;
+
+private:
+    DefaultFloatingPoint::Environment before_;
 };
 
 }  // namespace fastccd

@@ -14,9 +14,13 @@ using Range = tbb::blocked_range<std::size_t>;
 
 /// Whether the system lets this process have the threads that oneTBB may start for the caller's arena. oneTBB's workers start one
 /// another, and if the system refuses one to a worker (a limit on processes or memory), that ends the program. So the
-/// first time that a call wants more threads than any before it, as many are started here and joined, as a trial. False: keep
-/// to the caller's thread.
-bool workers_available() noexcept;
+/// first time that a call wants more threads than any before it, as many are started here and joined, as a trial, and if that fails, once
+/// more after a second at the earliest. False: keep to the caller's thread.
+bool workers_available();
+
+/// The arena of a thread that has none is made at its first use, and gives all its tasks, those that the program starts later, too, the
+/// floating-point environment there is then. So that first use is made here, in the caller's environment.
+void enter_arena();
 
 /// Cancelling the caller's task group must not leave anything undone, and all threads are to have the floating-point environment of this
 /// one (default_floating_point.hpp), not the one in which the arena was made.
@@ -36,6 +40,7 @@ void for_each_range(std::size_t size, std::size_t grain, const Body& body)
         body(Range{0, size});
         return;
     }
+    enter_arena();
     OwnContext context;
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(Range{0, size, grain}, body, context); });
 }
@@ -46,6 +51,7 @@ Value reduce_ranges(std::size_t size, std::size_t grain, const Value& identity, 
 {
     if (size == 0) return identity;
     if (size <= grain || !workers_available()) return body(Range{0, size}, identity);
+    enter_arena();
     OwnContext context;
     return tbb::this_task_arena::isolate([&] { return tbb::parallel_reduce(Range{0, size, grain}, identity, body, join, context); });
 }

@@ -1,15 +1,22 @@
 // The same bits whatever the caller's floating-point environment is, and that environment is the caller's again afterwards.
+#include <atomic>
 #include <cfenv>
 #include <cstring>
+#include <functional>
+#include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #ifdef __SSE2__
 #include <immintrin.h>
 #endif
+
+#include <fastccd/fastccd.h>
 
 #include "amount.hpp"
 #include "generators.hpp"
@@ -274,6 +281,41 @@ TEST(FloatingPointEnvironment, OfTheArenaDoesNotMatter)
             EXPECT_TRUE(same) << kind_name(kind) << ", " << environment.name;
         }
     }
+}
+
+/// oneTBB gives a thread's tasks the environment in which the thread first used it. Where that is within a call of the library, tasks that
+/// the program starts later must not get the library's.
+TEST(FloatingPointEnvironment, TasksOfTheProgramHaveItsOwnThoughTheLibraryWasFirstToUseOneTbb)
+{
+    const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, 3};
+    std::vector<oracle::Pair> pairs;  // more than take no other thread
+    generate("uniform", oracle::Kind::vertex_face, 72, 3000, pairs);
+    std::vector<double> toi(pairs.size());
+    const std::vector<double> positions(3 * 5000);
+    const auto ask_for_times = [&] { EXPECT_TRUE(time_of_impact(PairKind::vertex_face, interleaved(pairs), {}, toi).ok()); };
+    const auto make_mesh = [&] {
+        const PositionView points = PositionView::rows(positions.data(), positions.size() / 3);
+        EXPECT_TRUE((MovingMesh{points, points, {}, {}}.status().ok()));
+    };
+    const auto ask_from_c = [&] {
+        fastccd_options options;
+        fastccd_options_init(&options, sizeof options);
+        options.threads = 1;
+        EXPECT_EQ(fastccd_pairs_time_of_impact(FASTCCD_VERTEX_FACE, pairs[0][0].data(), toi.size(), &options, toi.data(), nullptr, nullptr),
+                  FASTCCD_OK);
+    };
+    const std::pair<const char*, std::function<void()>> calls[] = {{"times", ask_for_times}, {"mesh", make_mesh}, {"C, one thread", ask_from_c}};
+    for (const Environment& environment : environments)
+        for (const auto& [name, call] : calls) {
+            std::atomic<int> others = 0;
+            std::thread{[&, &call = call] {  // which has not used oneTBB yet
+                const Inside inside{environment};
+                const unsigned before = controls();
+                call();
+                tbb::parallel_for(0, 1000, [&](int) { others += controls() != before ? 1 : 0; });
+            }}.join();
+            EXPECT_EQ(others, 0) << environment.name << ", " << name;
+        }
 }
 
 }  // namespace

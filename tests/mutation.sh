@@ -358,7 +358,8 @@ mutant 'exact: second halves first' scalar/binary_form.cpp 's/(waiting\.push_bac
 # ---- The caller's floating-point environment
 mutant 'environment: as the caller left it' scheduler/guarded.hpp 's/const DefaultFloatingPoint defaults;//' floating_point_environment_test
 mutant 'environment: threads as the arena left it' scheduler/parallel_ranges.hpp 's/isolated, fp_settings/isolated, default_traits/' floating_point_environment_test
-mutant 'environment: not given back' scheduler/default_floating_point.cpp 's/_mm_setcsr\(before_\);/;/' floating_point_environment_test
+mutant 'environment: not given back' scheduler/default_floating_point.cpp 's/(~DefaultFloatingPoint\(\)\s*\{\s*)set\(before_\);/$1/' floating_point_environment_test
+mutant 'environment: the arena made in the library'\''s' scheduler/parallel_ranges.cpp 's/const CallersFloatingPoint callers;//' floating_point_environment_test
 
 mutant 'tasks: those of the program begun meanwhile' scheduler/parallel_ranges.hpp 's/tbb::this_task_arena::isolate\(\[&\] \{ (tbb::parallel_for\(.*?\);) \}\);/$1/' host_tasks_test
 

@@ -41,8 +41,8 @@ enum fastccd_error {
     FASTCCD_EXACT_SEPARATION = 12,       /* `exact` together with a minimum separation */
     FASTCCD_BAD_FACE_INDEX = 13,     /* a face of the mesh refers to a vertex that is not there; see fastccd_fault */
     FASTCCD_BAD_EDGE_INDEX = 14,     /* an edge of the mesh does */
-    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, threads < 0, a struct whose size is not set, or a
-                                        reserved option that is not 0 */
+    FASTCCD_BAD_ARGUMENT = 100       /* a NULL that is not allowed, an unknown kind, threads < 0, a struct whose size is not set, a reserved
+                                        option that is not 0, or a field of a later version that is not 0 */
 };
 
 enum fastccd_kind {
@@ -110,7 +110,7 @@ typedef struct fastccd_summary {
 /* Set `size` before the call. */
 typedef struct fastccd_step {
     size_t size;
-    double step;  /* nothing touches in [0, step); t_max if there is no contact; 0 on every error */
+    double step;  /* nothing touches in [0, step); t_max if there is no contact; 0 on every error but an unset `size` */
     size_t pair;  /* the pair that limits the step; SIZE_MAX: none */
     int32_t kind; /* enum fastccd_kind: which candidates `pair`, here or in the fault of a pair, counts */
     int32_t reserved;
