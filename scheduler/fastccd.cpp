@@ -30,11 +30,12 @@ void copy_times(const TileScratch& scratch, std::span<double> toi)
 Status dense(PairKind kind, const CheckedSource& pairs, const Options& options, std::span<double> toi, Summary* summary,
              std::span<std::uint8_t> roots)
 {
-    Job job = no_job(kind);
-    if (const Status status = prepare(kind, pairs, options, !roots.empty(), job); !status.ok()) return status;
     const std::size_t size = pairs.source.size;
+    if (!pairs.status.ok()) return pairs.status;
     if (toi.size() != size || (size > 0 && toi.data() == nullptr)) return {Error::wrong_size};
     if (!roots.empty() && (roots.size() != size || roots.data() == nullptr)) return {Error::wrong_size};
+    Job job = no_job(kind);
+    if (const Status status = prepare(kind, pairs, options, !roots.empty(), job); !status.ok()) return status;
 
     Workers<TileWorker> workers;
     const Summary totals =

@@ -33,8 +33,8 @@
 namespace fastccd {
 
 // Errors of all functions: bad_tolerance, bad_t_max, bad_minimum_separation, bad_distance_tolerance, exact_separation, exact_unavailable,
-// isa_unavailable, bad_isa_environment, wrong_size and out_of_memory; with a mesh those of MovingMesh::status() and index_out_of_range, too;
-// collision_free_step: invalid_pair, too.
+// isa_unavailable, bad_isa_environment, wrong_size and out_of_memory; of packed pairs bad_kind, too; with a mesh those of MovingMesh::status()
+// and index_out_of_range, too; collision_free_step: invalid_pair, too.
 
 /// toi[i]: lower bound of the first time of contact of pair i in [0, t_max]; +infinity: certainly
 /// apart throughout; NaN: a coordinate of the pair is NaN or infinite. `toi` has one element per pair.
