@@ -47,6 +47,24 @@ endif()
 END
 quietly env CXX="$cxx" cmake -S "$work/both" -B "$work/both/build" -DCMAKE_PREFIX_PATH="$prefix"
 
+# Without oneTBB's development files there is no static library, and if it was optional, no error.
+mkdir "$work/without_tbb"
+cat >"$work/without_tbb/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.22)
+project(without_tbb LANGUAGES CXX)
+set(CMAKE_DISABLE_FIND_PACKAGE_TBB ON)
+find_package(fastccd 0.1 REQUIRED COMPONENTS shared OPTIONAL_COMPONENTS static)
+get_target_property(aliased fastccd::fastccd ALIASED_TARGET)
+if(fastccd_static_FOUND OR TARGET fastccd::static OR NOT aliased STREQUAL fastccd::shared)
+  message(FATAL_ERROR "fastccd::fastccd is ${aliased}, and the static library is there without oneTBB")
+endif()
+find_package(fastccd 0.1 QUIET COMPONENTS static)
+if(fastccd_FOUND)
+  message(FATAL_ERROR "the static library without oneTBB")
+endif()
+END
+quietly env CXX="$cxx" cmake -S "$work/without_tbb" -B "$work/without_tbb/build" -DCMAKE_PREFIX_PATH="$prefix"
+
 # Another version, or a component that is not there, is refused.
 mkdir "$work/refused"
 for wanted in "9.0" "0.0.1" "0.1 COMPONENTS no_such_component"; do

@@ -39,7 +39,11 @@ endif()
 
 set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fastccd)
 install(DIRECTORY kernels/include/fastccd TYPE INCLUDE)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
+set(doc_dir ${CMAKE_INSTALL_DATAROOTDIR}/doc/fastccd)
+if(PROJECT_IS_TOP_LEVEL)
+  set(doc_dir ${CMAKE_INSTALL_DOCDIR})  # of another project, this is that one's
+endif()
+install(FILES LICENSE DESTINATION ${doc_dir} RENAME copyright)
 foreach(linkage IN ITEMS static shared)
   set(target fastccd)
   if(linkage STREQUAL shared)
