@@ -1,6 +1,7 @@
 // The header-only adapters, by behaviour: Eigen views, calls as those of Tight-Inclusion, a class as that of IPC Toolkit.
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -12,6 +13,7 @@
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_ccd.hpp"
+#include "oracle/exact_distance.hpp"
 
 namespace ticcd = fastccd::tight_inclusion;
 
@@ -65,6 +67,7 @@ class Adapter : public ::testing::TestWithParam<bool (*)(oracle::Kind, const ora
 
 TEST_P(Adapter, AgreesWithExactTruthToWithinItsDistance)
 {
+    std::size_t hits = 0;
     for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
         for (const std::string family : {"uniform", "t0_contact", "t1_contact", "grazing_exact", "pointpoint", "extreme_scale", "resting"}) {
             std::vector<oracle::Pair> pairs;
@@ -81,8 +84,12 @@ TEST_P(Adapter, AgreesWithExactTruthToWithinItsDistance)
                     }
                     EXPECT_LE(toi, truth.contact ? truth.t_hi : t_max) << family << ' ' << lossless(pair);
                     EXPECT_GE(toi, 0.0);
+                    ++hits;
+                    const mpq_class size = oracle::sum_of_extents(pair);
+                    EXPECT_LE(oracle::excess_of_distance(kind, pair, toi, 1e-6, size), 0x1p12 * 0x1p-53) << family << ' ' << lossless(pair);
                 }
         }
+    EXPECT_GT(hits, 400u);
 }
 
 TEST_P(Adapter, ToleranceIsADistance)
@@ -125,6 +132,23 @@ TEST_P(Adapter, ShorterStepsDownToTheStartAlone)
     for (std::size_t i = 0; i < 4; ++i) touching[4 + i] = touching[i];
     EXPECT_TRUE(GetParam()(oracle::Kind::vertex_face, touching, {}, toi));
     EXPECT_EQ(toi, 0.0);
+}
+
+/// Programs that look for their own mistakes trap these.
+TEST_P(Adapter, DividesByNothingThatIsZero)
+{
+    oracle::Pair at_rest = falling;
+    for (std::size_t i = 0; i < 4; ++i) at_rest[4 + i] = at_rest[i];
+    std::feclearexcept(FE_ALL_EXCEPT);
+    const int before = fegetexcept();
+    feenableexcept(FE_DIVBYZERO | FE_OVERFLOW | FE_INVALID);
+    double toi = -1.0;
+    bool hits = false;
+    for (const double separation : {0.0, 1e-3, std::numeric_limits<double>::denorm_min()})
+        for (const double tolerance : {1e-6, infinity}) hits |= GetParam()(oracle::Kind::vertex_face, at_rest, {separation, tolerance, 1.0}, toi);
+    feenableexcept(before);
+    fedisableexcept(~before & FE_ALL_EXCEPT);
+    EXPECT_FALSE(hits);
 }
 
 TEST_P(Adapter, NeverZeroIfApartAtTheStart)
