@@ -130,6 +130,7 @@ std::vector<Malformed> malformed_files()
         {"eight_columns", with_row(8, "1,1,1,1,1,1,1,1"), "row 8 has 8 columns"},
         {"many_columns", with_row(5, std::string(100'000, ',')), "row 5 has 100001 columns"},
         {"blank_row", with_row(4, ""), "row 4 has 0 columns"},
+        {"digits_without_end", with_row(4, "1,1,1," + std::string(1'000'001, '1') + ",1,1"), "row 4, column 4 (y denominator): 1000001 digits; at most"},
         {"decimal_point", with_row(4, "1,1,0.5,1,1,1"), "row 4, column 3 (y numerator): '0.5' is not an integer"},
         {"exponent", with_row(4, "1,1,1,1,1e5,1"), "row 4, column 5 (z numerator)"},
         {"not_a_number", with_row(4, "nan,1,1,1,1,1"), "row 4, column 1"},

@@ -188,10 +188,14 @@ TEST(MakeSceneCommand, SaysWhatItWroteAndKeepsOtherMeshes)
     EXPECT_EQ(files_in(out).size(), 3U);
     EXPECT_EQ(read_text(out + "/frame_001.ply"), bytes);
 
+    for (const char* name : {"SCAN.OBJ", "scan.obj"}) {
+        const ScratchDirectory with_a_mesh;
+        with_a_mesh.write(name, two_faces("1", "5"));
+        EXPECT_EQ(run({"make-scene", "cloth-ball", with_a_mesh / ""}).status, 1);
+        EXPECT_EQ(with_a_mesh.names().size(), 1U);
+    }
     const ScratchDirectory other;
     other.write("scan.obj", two_faces("1", "5"));
-    EXPECT_EQ(run({"make-scene", "cloth-ball", other / ""}).status, 1);
-    EXPECT_EQ(other.names().size(), 1U);
     const Outcome in_a_file = run({"make-scene", "cloth-ball", other / "scan.obj"});
     EXPECT_EQ(in_a_file.status, 1);
     EXPECT_TRUE(is_one_line(in_a_file)) << in_a_file.error;

@@ -13,15 +13,9 @@ namespace fastccd::tools {
 class InputError : public std::runtime_error {
 public:
     InputError(const std::filesystem::path& path, std::string_view message)
-        : std::runtime_error(path.string() + ": " + std::string(message)), path_(path)
+        : std::runtime_error(path.string() + ": " + std::string(message))
     {
     }
-
-    /// The file at fault.
-    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-
-private:
-    std::filesystem::path path_;
 };
 
 }  // namespace fastccd::tools

@@ -16,7 +16,6 @@ public:
     MappedFile(MappedFile&& other) noexcept;
     MappedFile& operator=(MappedFile&&) = delete;
 
-    [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
     [[nodiscard]] std::string_view bytes() const noexcept { return {data_, size_}; }
 
     /// Reads [offset, offset + length) into memory now, and asks the system to start on what follows

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t rows_per_pair = 8;
 constexpr std::size_t coordinate_columns = 6;
 constexpr std::size_t most_columns = coordinate_columns + 1;
+constexpr std::size_t most_digits = 1'000'000;  ///< In lowest terms no double has more than 324. GMP ends the program when memory does.
 constexpr std::size_t least_row = 2 * coordinate_columns;  ///< Bytes: digits, commas and a newline.
 
 constexpr std::array<std::string_view, most_columns> column_names{
@@ -109,6 +110,7 @@ private:
     {
         for (const std::size_t c : {column, column + 1}) {
             if (!is_integer(fields_[c])) fail(c, fmt::format("{} is not an integer", in_quotes(fields_[c])));
+            if (fields_[c].size() > most_digits) fail(c, fmt::format("{} digits; at most {} are read", fields_[c].size(), most_digits));
         }
         const RationalValue result = rational_to_double(fields_[column], fields_[column + 1]);
         const auto fraction = [&] { return fmt::format("{}/{}", shown(fields_[column]), shown(fields_[column + 1])); };

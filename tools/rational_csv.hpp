@@ -26,7 +26,7 @@ struct RationalCsv {
 
 /// Reads eight rows a pair: x0..x3 at t = 0, then at t = 1. A row is
 /// `xnum,xden,ynum,yden,znum,zden` and, in all rows or in none, the truth (0 or 1, the same in all
-/// rows of a pair); integers of any size, blanks around them allowed. Lines end in LF or CR LF; the
+/// rows of a pair); integers of up to a million digits, blanks around them allowed. Lines end in LF or CR LF; the
 /// last one may lack it. Zero rows are zero pairs.
 ///
 /// Throws InputError naming `path`, the row and where it applies the column (both from 1): number of

@@ -55,8 +55,7 @@ std::vector<Scene> public_scenes(const fs::path& data)
         if (!folder.is_directory()) continue;
         std::vector<std::string> frames;
         for (const auto& file : fs::directory_iterator{folder}) {
-            const fs::path extension = file.path().extension();
-            if (extension == ".ply" || extension == ".obj") frames.push_back(file.path().string());
+            if (named_as_mesh(file.path())) frames.push_back(file.path().string());
         }
         if (frames.size() < 2) continue;
         std::ranges::sort(frames, {}, [](const std::string& path) { return std::pair{path.size(), path}; });

@@ -206,8 +206,7 @@ void refuse_frames_left_over(int frames, const std::filesystem::path& out_dir)
     std::filesystem::directory_iterator entry(out_dir, error);
     for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
         const std::filesystem::path& path = entry->path();
-        const bool mesh = path.extension() == ".ply" || path.extension() == ".obj";
-        if (!mesh || own.contains(path.filename().string())) continue;
+        if (!named_as_mesh(path) || own.contains(path.filename().string())) continue;
         throw InputError(
             path,
             "is a frame of another scene, which this one would be mixed up with; name an empty "

@@ -56,13 +56,13 @@ bool begins_as_ply(std::string_view content)
     return content.starts_with("ply\n") || content.starts_with("ply\r\n");
 }
 
-bool named_obj(const std::filesystem::path& path)
+std::string extension_in_small_letters(const std::filesystem::path& path)
 {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
         return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     });
-    return extension == ".obj";
+    return extension;
 }
 
 void append_little_endian(std::string& bytes, std::uint64_t bits, int size)
@@ -93,7 +93,7 @@ Mesh parse_mesh(std::string_view content, const std::filesystem::path& path)
 {
     try {
         if (begins_as_ply(content)) return detail::parse_ply(content);
-        if (named_obj(path)) return detail::parse_obj(content);
+        if (extension_in_small_letters(path) == ".obj") return detail::parse_obj(content);
     } catch (const detail::MeshError& error) {
         throw InputError(path, error.what());
     }
@@ -129,6 +129,12 @@ void write_ply(const OutputFile& file, const Mesh& mesh)
     for (const Edge& line : mesh.lines)
         for (const std::int32_t end : line) append_little_endian(bytes, static_cast<std::uint32_t>(end), 4);
     file.write(bytes);
+}
+
+bool named_as_mesh(const std::filesystem::path& path)
+{
+    const std::string extension = extension_in_small_letters(path);
+    return extension == ".ply" || extension == ".obj";
 }
 
 std::vector<Edge> unique_edges(const std::vector<std::int32_t>& faces, const std::vector<Edge>& lines)

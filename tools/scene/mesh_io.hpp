@@ -39,11 +39,14 @@ struct Mesh {
 /// Throws InputError, naming line or byte and element, when the file is missing, unreadable,
 /// malformed, truncated or longer than its header says, holds a face that is not a triangle, or a face or line that
 /// refers to a vertex that does not exist, or has no vertices, or neither faces nor lines. Memory stays within a
-/// small multiple of the file's size, whatever its header claims.
+/// small multiple of the file's size, whatever its header claims. Throws Interrupted after a signal.
 [[nodiscard]] Mesh read_mesh(const std::filesystem::path& path);
 
 /// `read_mesh` on a file's content; `path` gives the extension and the name for messages.
 [[nodiscard]] Mesh parse_mesh(std::string_view content, const std::filesystem::path& path);
+
+/// Whether a file of that name is taken for a frame: *.ply or *.obj, in capitals, too.
+[[nodiscard]] bool named_as_mesh(const std::filesystem::path& path);
 
 /// Writes PLY, binary little endian: double x y z, faces as lists of int, and lines, if there are any, as edges. Throws as
 /// OutputFile::write.

@@ -6,6 +6,8 @@
 #include <system_error>
 #include <type_traits>
 
+#include "../interrupt.hpp"
+
 namespace fastccd::tools::detail {
 
 bool LineCursor::next()
@@ -15,7 +17,7 @@ bool LineCursor::next()
     line_ = text_.substr(offset_, end == std::string_view::npos ? end : end - offset_);
     offset_ = end == std::string_view::npos ? text_.size() : end + 1;
     if (!line_.empty() && line_.back() == '\r') line_.remove_suffix(1);
-    ++number_;
+    if (++number_ % 65536 == 0) check_interrupt();
     return true;
 }
 

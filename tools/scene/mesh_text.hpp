@@ -12,7 +12,7 @@ class LineCursor {
 public:
     explicit LineCursor(std::string_view text) : text_(text) {}
 
-    /// Moves to the next line and returns true, or returns false at the end of the text.
+    /// Moves to the next line and returns true, or returns false at the end of the text. Throws Interrupted after a signal.
     bool next();
 
     [[nodiscard]] std::string_view line() const { return line_; }  ///< without its end

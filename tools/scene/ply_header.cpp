@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <unordered_set>
 #include <utility>
 
 #include "../shown_text.hpp"
@@ -105,10 +107,7 @@ private:
             fail(fmt::format("{} is not a number of {} elements", in_quotes(count_word),
                              in_quotes(name)));
         }
-        const bool known =
-            std::any_of(elements_.begin(), elements_.end(),
-                        [name](const PlyElement& element) { return element.name == name; });
-        if (known) fail(fmt::format("element {} is declared twice", in_quotes(name)));
+        if (!names_.insert(std::string(name)).second) fail(fmt::format("element {} is declared twice", in_quotes(name)));
         expect_end(rest);
         elements_.push_back({std::string(name), count, {}});
     }
@@ -143,6 +142,7 @@ private:
     LineCursor& lines_;
     std::optional<PlyFormat> format_;
     std::vector<PlyElement> elements_;
+    std::unordered_set<std::string> names_;  // of elements_: a header may be of nothing but these
 };
 
 }  // namespace

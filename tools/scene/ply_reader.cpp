@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <string>
 
+#include "../interrupt.hpp"
 #include "../shown_text.hpp"
 #include "mesh_formats.hpp"
 #include "mesh_text.hpp"
@@ -115,6 +116,7 @@ template <class Body, class Read>
 void read_items(const PlyElement& element, Body& body, Read read)
 {
     for (std::uint64_t i = 0; i < element.count; ++i) {
+        if (i % 65536 == 65535) check_interrupt();  // in binary files there are no lines
         body.begin({element.name, i});
         for (std::size_t k = 0; k < element.properties.size(); ++k)
             if (!read(i, k)) skip_property(element.properties[k], body);
