@@ -170,6 +170,7 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random", "--kind", "vf", "--nothing"}, "--nothing"},
         {{"random", "--kind", "vf", "--min-separation", "1e-400"}, "--min-separation: '1e-400' is too small"},
         {{"run", "--kind", "vf", "--hits=", none}, "--hits=: the value is empty"},
+        {{"run", directory / "none.csv", "--kind", "vf", "--hits=" + (directory / "a="), "--range", "x"}, "--range: 'x' is not A:B"},
         {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
         {{"random", "--kind", "vf", "--save", directory / "pairs.CSV"}, "--save: what is written is .npy"},
         {{"run", "--kind", "vf"}, "FILE is required"},
@@ -198,6 +199,13 @@ TEST(CommandErrors, NamesWithControlCharactersAreSpelledOut)
     const Outcome file = run({"run", "--kind", "vf", "none\n\x1b[31m\x7f\xc3\xa9\xc2\x9b.csv"});
     EXPECT_EQ(file.status, 1);
     EXPECT_EQ(file.error.rfind("fastccd: none\\x0a\\x1b[31m\\x7f\xc3\xa9\xc2\\x9b.csv: cannot be opened", 0), 0U) << file.error;
+    const ScratchDirectory directory;
+    const std::string pairs = directory / "a\x1b[2J.npy";
+    EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "1", "--quiet", "--save", pairs}).status, 0);
+    const Outcome report = run({"run", "--kind", "vf", pairs});
+    EXPECT_EQ(report.status, 0);
+    EXPECT_NE(report.out.find("a\\x1b[2J.npy"), std::string::npos) << report.out;
+    EXPECT_EQ(report.out.find('\x1b'), std::string::npos) << report.out;
     const Outcome word = run({"random", "--kind", "vf", "--\x1bx"});
     EXPECT_EQ(word.status, 2);
     EXPECT_EQ(word.error.rfind("fastccd: not expected: --\\x1bx; see", 0), 0U) << word.error;

@@ -160,6 +160,32 @@ TEST(Command, InvalidPairsAreNamedAndTheOthersAnswered)
     EXPECT_EQ(json.error, "fastccd: warning: " + named + "\n");
 }
 
+TEST(Command, ProofTellsWhatIsCertainAndExactSettlesTheRest)
+{
+    // Above the middle of the face; invalid; ends before the face; onto its corner.
+    std::vector<std::vector<double>> pairs{falling_vertex(1, -1), falling_vertex(1, -1), falling_vertex(1, 0.5), falling_vertex(1, -1)};
+    pairs[1][0] = std::numeric_limits<double>::quiet_NaN();
+    for (const std::size_t point : {0u, 4u})
+        for (const std::size_t axis : {0u, 1u}) pairs[3][3 * point + axis] = -1;
+    const ScratchDirectory directory;
+    const std::string file = directory / "pairs.npy", hits = directory / "hits.csv";
+    write_npy(file, buffer(pairs));
+    const auto lines_of = [&](const Arguments& more) {
+        Arguments arguments{"run", file, "--kind", "vf", "--quiet", "--hits", hits, "--proof"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        EXPECT_EQ(run(arguments).status, 0);
+        std::vector<std::string> lines;  // pair and proof, without the time
+        std::istringstream text{read_text(hits)};
+        for (std::string line; std::getline(text, line);) lines.push_back(line.substr(0, line.find(',') + 1) + line.substr(line.rfind(',') + 1));
+        return lines;
+    };
+    EXPECT_EQ(lines_of({}), (std::vector<std::string>{"pair,proven", "0,1", "1,", "3,0"}));
+#ifdef FASTCCD_HAVE_EXACT
+    EXPECT_EQ(lines_of({"--exact"}), (std::vector<std::string>{"pair,proven", "0,1", "1,", "3,1"}));
+#endif
+    EXPECT_NE(run({"run", file, "--kind", "vf", "--proof"}).status, 0) << "without --hits there is no place for it";
+}
+
 TEST(Command, PairsOfSeveralFilesAreNamedWithTheirFile)
 {
     const ScratchDirectory directory;

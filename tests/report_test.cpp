@@ -267,7 +267,10 @@ TEST(Report, StringsAreTextOnThePage)
     altered["machine"]["system"] = altered["machine"]["best_isa"] = altered["machine"]["commit"] = markup;
     for (const char* part : {"paper_table", "hard_cases", "scenes", "scaling"}) altered[part]["isa"] = markup;
     altered["scenes"]["paper"][0]["name"] = altered["scenes"]["scenes"][0]["name"] = altered["hard_cases"]["sets"][0]["name"] = markup;
-    for (const char* kind : {"vf", "ee"}) altered["speed_and_error"][kind]["points"][0]["isa"] = markup;
+    for (const char* kind : {"vf", "ee"}) {
+        altered["speed_and_error"][kind]["points"][0]["isa"] = markup;
+        for (Json& peer : altered["speed_and_error"][kind]["peers"]) peer["name"] = markup;
+    }
     ASSERT_EQ(run({"report", "--draw", directory.write("altered.json", altered.dump()), "--out", directory / "page"}).status, 0);
     for (const std::string& name : files_in(directory / "page")) {
         if (name.ends_with(".json")) continue;

@@ -18,6 +18,7 @@
 #include "progress.hpp"
 #include "report_totals.hpp"
 #include "scene/make_scene.hpp"
+#include "shown_text.hpp"
 
 namespace fastccd::tools {
 namespace {
@@ -83,7 +84,7 @@ void make_scene_command(const MakeSceneOptions& options)
     const std::string folder = (out_dir / "").parent_path().string();
     const std::string text =
         fmt::format("wrote {} frames, {} to {}: {}, {} each\nnow:  fastccd scene {}/frame_*.ply\n", frames,
-                    path(frame_name(0, frames)), path(frame_name(frames - 1, frames)),
+                    on_one_line(path(frame_name(0, frames))), on_one_line(path(frame_name(frames - 1, frames))),
                     counted(scene.positions(0).size() / 3, "vertex", "vertices"), counted(scene.faces().size() / 3, "face"),
                     quoted(folder.starts_with('-') ? "./" + folder : folder));
     write_all(STDOUT_FILENO, text, "standard output");

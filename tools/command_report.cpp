@@ -11,6 +11,7 @@
 #include "common_options.hpp"
 #include "output_file.hpp"
 #include "report/report.hpp"
+#include "shown_text.hpp"
 
 namespace fastccd::tools {
 
@@ -40,7 +41,7 @@ void add_report_command(CLI::App& app)
     command->callback([options] {
         report::write_report(*options);
         if (options->quiet) return;
-        write_all(STDOUT_FILENO, fmt::format("wrote {}\n", (std::filesystem::path{options->out} / "report.html").string()),
+        write_all(STDOUT_FILENO, fmt::format("wrote {}\n", on_one_line((std::filesystem::path{options->out} / "report.html").string())),
                   "standard output");
     });
 }

@@ -23,6 +23,7 @@
 
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "shown_text.hpp"
 
 namespace {
 
@@ -44,31 +45,14 @@ void refuse_empty_values(const std::vector<std::string_view>& arguments)
 {
     for (const std::string_view argument : arguments) {
         if (argument == "--") return;
-        if (argument.starts_with("--") && argument.ends_with('=')) throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument));
+        if (argument.starts_with("--") && argument.find('=') + 1 == argument.size()) throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument));
     }
-}
-
-/// One line of text, whatever a file's name holds: line breaks, and what would drive a terminal, are spelled out. Besides the control
-/// characters of ASCII those are U+0080 to U+009F, in UTF-8 C2 80 to C2 9F.
-std::string on_one_line(std::string_view text)
-{
-    std::string line;
-    unsigned char before = 0;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte == 0x7f || (before == 0xc2 && byte < 0xa0))
-            line += fmt::format("\\x{:02x}", byte);
-        else
-            line += c;
-        before = byte;
-    }
-    return line;
 }
 
 int fail(std::string_view message)
 {
     // Not fmt::print: it throws when standard error cannot be written, and nobody is left to be told.
-    std::fputs(fmt::format("fastccd: {}\n", on_one_line(message)).c_str(), stderr);
+    std::fputs(fmt::format("fastccd: {}\n", fastccd::tools::on_one_line(message)).c_str(), stderr);
     return exit_failure;
 }
 
@@ -94,7 +78,7 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error)
     std::string command = "fastccd";
     for (const CLI::App* const given : app->get_subcommands()) command += " " + given->get_name();
     const std::string what = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ? unexpected(*app) : without_value(error.what());
-    return fmt::format("fastccd: {}; see `{} --help`\n", on_one_line(what), command);
+    return fmt::format("fastccd: {}; see `{} --help`\n", fastccd::tools::on_one_line(what), command);
 }
 
 /// The exit status, where the signal cannot end it, see end_by.

@@ -10,6 +10,7 @@
 #include <fastccd/isa.hpp>
 
 #include "output_file.hpp"
+#include "shown_text.hpp"
 
 namespace fastccd::tools {
 namespace {
@@ -62,13 +63,16 @@ std::string counted(std::size_t number, std::string_view thing, std::string_view
     return plural.empty() ? fmt::format("{} {}s", with_commas(number), thing) : fmt::format("{} {}", with_commas(number), plural);
 }
 
+void append_line(fmt::memory_buffer& report, std::string_view label, std::string_view text)
+{
+    fmt::format_to(std::back_inserter(report), "{:<17}{}\n", label, on_one_line(text));
+}
+
 std::string text_report(const PairOptions& options, const Question& question, const Totals& totals)
 {
     const Summary& sum = totals.summary;
     fmt::memory_buffer out;
-    const auto line = [&out](std::string_view label, std::string_view text) {
-        fmt::format_to(std::back_inserter(out), "{:<17}{}\n", label, text);
-    };
+    const auto line = [&out](std::string_view label, std::string_view text) { append_line(out, label, text); };
 
     line(kind_name(options.kind), question.source);
     line("asked", fmt::format("t in [0, {}], tolerance {}{}{}", options.narrow_phase.t_max, options.narrow_phase.tolerance,
@@ -150,7 +154,7 @@ void print_report(const PairOptions& options, const Question& question, const To
     if (options.json) write_all(descriptor, json_report(options, question, totals), stream);
     if (text) write_all(descriptor, text_report(options, question, totals), stream);
     if (!text && totals.summary.invalid > 0) {
-        write_all(STDERR_FILENO, fmt::format("fastccd: warning: {}\n", invalid_pairs(question, totals)), "standard error");
+        write_all(STDERR_FILENO, fmt::format("fastccd: warning: {}\n", on_one_line(invalid_pairs(question, totals))), "standard error");
     }
 }
 

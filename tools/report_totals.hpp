@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "narrow_phase_run.hpp"
 
 namespace fastccd::tools {
@@ -25,5 +27,8 @@ void print_report(const PairOptions& options, const Question& question, const To
 
 /// "1 contact", "1,234 contacts"; of what has another plural, that too.
 [[nodiscard]] std::string counted(std::size_t number, std::string_view thing, std::string_view plural = {});
+
+/// A line of a report: what it is about, and what there is to say, of which names of files may hold anything.
+void append_line(fmt::memory_buffer& report, std::string_view label, std::string_view text);
 
 }  // namespace fastccd::tools

@@ -135,7 +135,7 @@ std::string speed_error_tables(const Json& part, const std::string& kind)
         {"", "M pairs/s", "early at worst", "late at worst", "missed", "late", "false alarms"}};
     for (const Json& peer : peers) {
         const bool no_time = peer.at("signed_error").is_null();
-        const std::string name = peer.at("name");
+        const std::string name = escaped(peer.at("name").get<std::string>());
         others.row(fmt::format("data-judged=\"{} {}\"", kind, name))
             .cell(name)
             .speed(peer.at("timing"))

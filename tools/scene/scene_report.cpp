@@ -1,7 +1,8 @@
 #include "scene_report.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <cstdint>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -46,10 +47,19 @@ std::string contacts_in_candidates(const KindTotals& totals)
     return fmt::format("{} in {}", counted(totals.contacts, "contact"), counted(totals.candidates, "candidate"));
 }
 
+/// One in the middle of three frames is listed for two steps, and is one vertex.
+std::size_t count_invalid(const SceneTotals& totals)
+{
+    std::set<std::int32_t> vertices;
+    for (const InvalidVertex& invalid : totals.invalid) vertices.insert(invalid.vertex);
+    return vertices.size();
+}
+
 std::string left_out(const SceneTotals& totals)
 {
-    return fmt::format("{} with NaN or infinity, left out with all that {} part of", counted(totals.invalid.size(), "vertex", "vertices"),
-                       totals.invalid.size() == 1 ? "it is" : "they are");
+    const std::size_t count = count_invalid(totals);
+    return fmt::format("{} with NaN or infinity, left out with all that {} part of", counted(count, "vertex", "vertices"),
+                       count == 1 ? "it is" : "they are");
 }
 
 std::string invalid_vertices(const SceneTotals& totals)
@@ -106,9 +116,7 @@ void add_kinds(Json& json, const KindTotals& vertex_face, const KindTotals& edge
 std::string scene_text_report(const SceneOptions& options, const SceneTotals& totals)
 {
     fmt::memory_buffer out;
-    const auto line = [&out](std::string_view label, std::string_view text) {
-        fmt::format_to(std::back_inserter(out), "{:<17}{}\n", label, text);
-    };
+    const auto line = [&out](std::string_view label, std::string_view text) { append_line(out, label, text); };
     const Options& asked = options.common.narrow_phase;
     const std::size_t steps = totals.steps.size();
     line("scene", fmt::format("{} to {}, {}", totals.frames.front(), totals.frames.back(), counted(steps, "step")));
@@ -167,7 +175,7 @@ std::string scene_json_report(const SceneOptions& options, const SceneTotals& to
     json["faces"] = totals.faces;
     json["edges"] = totals.edges;
     add_kinds(json, sum(totals, PairKind::vertex_face), sum(totals, PairKind::edge_edge));
-    json["invalid"] = totals.invalid.size();
+    json["invalid"] = count_invalid(totals);
     json["invalid_vertices"] = Json::array();
     for (const InvalidVertex& invalid : totals.invalid) {
         json["invalid_vertices"].push_back({{"step", invalid.step}, {"vertex", invalid.vertex}});
