@@ -1,7 +1,6 @@
 #include "datasets.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <stdexcept>
 
@@ -12,6 +11,7 @@
 #include <scene/broad_phase.hpp>
 #include <scene/make_scene.hpp>
 #include <scene/mesh_io.hpp>
+#include <test_data.hpp>
 
 namespace fastccd::bench {
 
@@ -67,7 +67,7 @@ SceneStep grids()
 
 SceneStep public_scene(const PublicScene& scene)
 {
-    const fs::path data = data_directory().value();
+    const fs::path data = testing::data_directory().value();
     tools::Mesh start = tools::read_mesh(data / scene.start);
     tools::Mesh end = tools::read_mesh(data / scene.end);
     if (start.faces != end.faces) throw std::runtime_error(std::string(scene.name) + ": the frames have different faces");
@@ -134,18 +134,10 @@ void add_pairs(Dataset& set, SceneStep scene)
 
 }  // namespace
 
-std::optional<fs::path> data_directory()
-{
-    const char* const given = std::getenv("FASTCCD_DATA");
-    const fs::path data = given != nullptr ? fs::path(given) : fs::path(FASTCCD_SOURCE_DIR) / "../shared/data";
-    if (!fs::is_directory(data)) return std::nullopt;
-    return data;
-}
-
 std::vector<std::string> available_datasets()
 {
     std::vector<std::string> names{"random", "generated", "grids"};
-    if (const auto data = data_directory())
+    if (const auto data = testing::data_directory())
         for (const PublicScene& scene : public_scenes)
             if (fs::exists(*data / scene.start) && fs::exists(*data / scene.end)) names.emplace_back(scene.name);
     return names;

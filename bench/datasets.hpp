@@ -42,10 +42,6 @@ inline constexpr std::size_t most_pairs = 8'000'000;
 [[nodiscard]] std::vector<std::string> available_datasets();
 [[nodiscard]] bool is_scene(const std::string& dataset);
 
-/// The folder of public data: the environment variable FASTCCD_DATA, else shared/data beside the
-/// repository. Empty if that is no folder.
-[[nodiscard]] std::optional<std::filesystem::path> data_directory();
-
 /// The data set of that name. Only the latest one is kept, because several would not fit into memory:
 /// the reference is valid until the next call with other arguments.
 [[nodiscard]] const Dataset& dataset(const std::string& name, PairKind kind);

@@ -12,6 +12,7 @@
 
 #include <fastccd/fastccd.hpp>
 #include <rational_csv.hpp>
+#include <test_data.hpp>
 
 #include "bench_main.hpp"
 #include "bench_table.hpp"
@@ -33,7 +34,7 @@ struct QueryFile {
 std::vector<QueryFile> query_files()
 {
     std::vector<QueryFile> files;
-    const auto data = data_directory();
+    const auto data = testing::data_directory();
     if (!data || !fs::is_directory(*data / "queries")) return files;
     for (const auto& entry : fs::recursive_directory_iterator(*data / "queries")) {
         const fs::path& path = entry.path();

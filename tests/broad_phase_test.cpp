@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <initializer_list>
 #include <limits>
@@ -22,6 +21,7 @@
 #include <vector>
 
 #include "amount.hpp"
+#include "test_data.hpp"
 #include "tools/interrupt.hpp"
 #include "tools/scene/box_tree.hpp"
 #include "tools/scene/id_sorter.hpp"
@@ -428,15 +428,9 @@ struct KnownScene {
 
 TEST(BroadPhase, CountsOnPublicScenes)
 {
-    const char* const given = std::getenv("FASTCCD_DATA");
-    const std::filesystem::path data =
-        given != nullptr ? given
-                         : std::filesystem::path(FASTCCD_SOURCE_DIR) / ".." / "shared" / "data";
-    const std::filesystem::path scenes = data / "scenes";
-    if (!std::filesystem::is_directory(scenes)) {
-        GTEST_SKIP() << "NO DATA: " << scenes
-                     << " is no directory; set FASTCCD_DATA. Nothing was checked here.";
-    }
+    const auto data = testing::data_directory();
+    if (!data || !std::filesystem::is_directory(*data / "scenes")) GTEST_SKIP() << testing::no_data_message;
+    const std::filesystem::path scenes = *data / "scenes";
     const std::array<KnownScene, 3> known{{
         {"cloth-ball/cloth_ball92.ply", "cloth-ball/cloth_ball93.ply", 138825, 1655541, 5197332},
         {"n-body-simulation/balls16_18.ply", "n-body-simulation/balls16_19.ply", 219840, 9396388,

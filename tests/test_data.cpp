@@ -110,7 +110,7 @@ std::vector<fs::path> files_below(const fs::path& folder, const std::string& ext
 
 std::optional<fs::path> data_directory() {
     const char* const given = std::getenv("FASTCCD_DATA");
-    const fs::path data = given != nullptr ? fs::path(given) : fs::path(FASTCCD_SOURCE_DIR) / "../shared/data";
+    const fs::path data = given != nullptr && *given != '\0' ? fs::path(given) : fs::path(FASTCCD_SOURCE_DIR) / "../shared/data";
     if (!fs::is_directory(data)) return std::nullopt;
     return data;
 }

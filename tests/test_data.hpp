@@ -9,13 +9,13 @@
 
 namespace fastccd::testing {
 
-/// The folder with queries/ and hardcases/: the environment variable FASTCCD_DATA if it is set, else shared/data beside
-/// the repository. Empty if that is no folder. Tests that need it must then say that they are skipped:
+/// The folder with scenes/, queries/ and hardcases/: the environment variable FASTCCD_DATA if it is set and not empty, else
+/// shared/data beside the repository. Empty if that is no folder. Tests that need it must then say that they are skipped:
 /// GTEST_SKIP() << no_data_message.
 std::optional<std::filesystem::path> data_directory();
 
 inline constexpr const char* no_data_message =
-    "NO DATA: set FASTCCD_DATA to the folder that holds queries/ and hardcases/; nothing was checked here";
+    "NO DATA: set FASTCCD_DATA to the folder that holds scenes/, queries/ and hardcases/; nothing was checked here";
 
 /// Pairs with known answers.
 struct QuerySet {
