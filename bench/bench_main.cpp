@@ -14,6 +14,8 @@ namespace fastccd::bench {
 
 namespace {
 
+constexpr int no_match = 3;  // exit status: no benchmark has a name that the filter matches; tools/bench.sh tells this from a failure
+
 bool any_failed = false;
 
 void add_context()
@@ -48,7 +50,7 @@ int run_benchmarks(int argc, char** argv, const std::function<void(bool filtered
     try {
         add_context();
         register_benchmarks(filtered);
-        if (benchmark::RunSpecifiedBenchmarks() == 0) return 1;
+        if (benchmark::RunSpecifiedBenchmarks() == 0) return no_match;
         benchmark::Shutdown();
     } catch (const std::exception& error) {
         std::cerr << argv[0] << ": " << error.what() << '\n';

@@ -50,6 +50,11 @@ def name_of(benchmark):
     return re.sub(r"/(manual_time|real_time)$", "", benchmark["run_name"])
 
 
+def time_of(benchmark):
+    """The time that its rates are of: processor time, unless the name says otherwise."""
+    return "cpu_time" if name_of(benchmark) == benchmark["run_name"] else "real_time"
+
+
 def refuse_other_answers(benchmarks):
     """A fast wrong answer is no result: the same pairs have the same contacts and the same earliest one, whatever the layout, instruction
     set, number of threads and form of the answer, in every round."""
@@ -75,15 +80,16 @@ def refuse_other_answers(benchmarks):
 
 def aggregates(rounds):
     """Of one benchmark in every round, as Google Benchmark writes them: the median is the result, the coefficient of variation of the
-    time says how far to trust it."""
+    time that its rates are of says how far to trust it."""
     first = rounds[0]
     common = {"run_name": first["run_name"], "run_type": "aggregate", "repetitions": len(rounds), "time_unit": first["time_unit"]}
     same = {"name", "family_index", "per_family_instance_index", "repetition_index", "threads", *common}
     medians = {key: statistics.median(benchmark[key] for benchmark in rounds) for key in first if key not in same}
-    times = [benchmark["real_time"] for benchmark in rounds]
+    time = time_of(first)
+    times = [benchmark[time] for benchmark in rounds]
     variation = statistics.stdev(times) / statistics.mean(times) if len(times) > 1 else 0.0
     return [{"name": first["run_name"] + "_median", **common, "aggregate_name": "median", **medians},
-            {"name": first["run_name"] + "_cv", **common, "aggregate_name": "cv", "real_time": variation}]
+            {"name": first["run_name"] + "_cv", **common, "aggregate_name": "cv", time: variation}]
 
 
 def merge(folder, runs):
@@ -111,7 +117,7 @@ def rows_of(record):
         if b["aggregate_name"] == "median":
             rows.setdefault(name, {}).update(b)
         else:
-            rows.setdefault(name, {})["spread"] = b["real_time"]
+            rows.setdefault(name, {})["spread"] = b.get(time_of(b), b.get("real_time"))  # some older records have this alone
     return rows
 
 

@@ -49,6 +49,15 @@ with tempfile.TemporaryDirectory() as folder:
     assert "| vertex_face | random | blocked double | dense | 1 | 90.9 | 333 |" in table, table
     assert "| random pairs, packed, M pairs/s | at least 60 | vertex-face 333 | 1 of 1 |" in table, table
 
+    # Rates of processor time have the spread of that.
+    rounds = []
+    for cpu_time in (2, 3, 4):
+        stage = {**row(FAST, 100, 0), "run_name": "stage/vertex_face/avx512/screening/random", "cpu_time": cpu_time, "s/pair": cpu_time * 1e-9, "kept": 0.5}
+        rounds.append([stage])
+    stages = pathlib.Path(report("merge", str(pathlib.Path(folder) / "stages"), *write(folder, rounds)).stdout.strip())
+    table = report("table", str(stages)).stdout
+    assert "| vertex_face | random | screening |  | 3.00 | 50 % | 33 % |" in table, table
+
     # A wrong answer in one round is no result, though the median of three would hide it.
     runs = write(folder, [[row(SLOW, 10, 0), row(FAST, 2, 1)], [row(SLOW, 10, 0), row(FAST, 2, 1, contacts=8)], [row(SLOW, 10, 0), row(FAST, 2, 1)]])
     before = path.read_text()

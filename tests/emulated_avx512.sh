@@ -9,7 +9,7 @@ source "$(dirname "$0")/../tools/setup.sh"
 work=$1 programs=$2
 shift 2
 mapfile -t commands
-install_packages bochs bochs-term busybox-static cpio isolinux syslinux-common xorriso
+install_packages "${emulator_packages[@]}"
 system=$work/system disc=$work/disc serial=$work/serial.txt
 rm -rf "$system" "$disc" "$serial"
 mkdir -p "$system"/{bin,dev,proc} "$disc"

@@ -22,9 +22,8 @@ peer_packages=(libfcl-dev libbullet-dev)
 install_packages "${library_packages[@]}" "${tool_packages[@]}" "${bench_packages[@]}" python3
 install_packages "${peer_packages[@]}" || echo "going on without ${peer_packages[*]}" >&2
 programs=(narrow_phase_bench stage_bench peers_bench)
-configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_BENCHMARKS=ON -- "${programs[@]}"
+configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=OFF -DFASTCCD_BENCHMARKS=ON -- "${programs[@]}"
 
-data=${FASTCCD_DATA:-$root/../shared/data}
 [ -d "$data" ] || printf '\n!! No data folder at %s: the public scenes are left out. Set FASTCCD_DATA.\n' "$data"
 
 # So many times all of them, not each so many times in a row: medians are of as many minutes, as a shared machine has bad ones, and of as many
@@ -41,9 +40,10 @@ options+=(--benchmark_enable_random_interleaving=true "--benchmark_context=commi
 
 runs=()
 run_all() { # NAME: the benchmarks of a program
-  local program=$1 names group out
-  names=$("$build/bench/$program" ${filter:+"--benchmark_filter=$filter"} --benchmark_list_tests 2>/dev/null || true)
-  [ -n "$names" ] || return 0
+  local program=$1 names group out status=0
+  names=$("$build/bench/$program" ${filter:+"--benchmark_filter=$filter"} --benchmark_list_tests 2>"$build/bench/$program.log") || status=$?
+  [ $status -ne 3 ] || return 0  # no name that the filter matches
+  [ $status -eq 0 ] || { cat "$build/bench/$program.log" >&2; exit 1; }
   # What is compared with one another takes turns, so that a bad second of the machine is one of all.
   while read -r group; do
     out=$build/bench/run_${#runs[@]}.json

@@ -2,7 +2,7 @@
 # Sets everything up, builds fastccd, makes a scene and finds all contacts in it: the main job.
 source "$(dirname "$0")/setup.sh"
 install_packages "${library_packages[@]}" "${tool_packages[@]}"
-configure_and_build -DFASTCCD_TESTS=OFF -DFASTCCD_BENCHMARKS=OFF -- fastccd_command
+configure_and_build -DFASTCCD_TOOLS=ON -DFASTCCD_TESTS=OFF -DFASTCCD_BENCHMARKS=OFF -- fastccd_command
 
 fastccd=$build/fastccd
 sample=$(mktemp -d)

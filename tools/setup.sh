@@ -3,7 +3,11 @@
 
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${FASTCCD_BUILD:-$root/build}
+build=$(realpath -m "${FASTCCD_BUILD:-$root/build}")
+
+# Where the public data are, if anywhere; absolute, since tests run elsewhere.
+data=$(realpath -m "${FASTCCD_DATA:-$root/../shared/data}")
+export FASTCCD_DATA=$data
 
 say() { printf '\n== %d:%02d %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"; }
 
@@ -12,6 +16,8 @@ tool_packages=(libcli11-dev libfmt-dev nlohmann-json3-dev libgmp-dev)
 # dpkg-dev, file: for cpack; binutils: for what the libraries export; ccache: what is compiled twice.
 test_packages=(libgtest-dev libeigen3-dev python3 python3-numpy dpkg-dev file binutils ccache)
 bench_packages=(libbenchmark-dev)
+# For tests/emulated_avx512.sh.
+emulator_packages=(bochs bochs-term busybox-static cpio isolinux syslinux-common xorriso)
 
 # install_packages NAME...: installs what is missing, and says so.
 install_packages() {
@@ -40,10 +46,17 @@ as_root() {
 configure_and_build() {
   local options=() ; while [ $# -gt 0 ] && [ "$1" != -- ]; do options+=("$1"); shift; done
   [ $# -gt 0 ] && shift
+  # What a folder was configured for by hand before stays its generator, and nothing else of it.
+  local generator=() parallel=()
+  [ -f "$build/CMakeCache.txt" ] || generator=(-G Ninja)
   say "configuring in $build"
-  cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${options[@]}" >"$build.configure.log" 2>&1 ||
+  mkdir -p "$build"
+  cmake -S "$root" -B "$build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release -DFASTCCD_EXACT=ON -DFASTCCD_AVX=ON -DFASTCCD_AVX512=ON \
+    "${options[@]}" >"$build.configure.log" 2>&1 ||
     { cat "$build.configure.log" >&2; return 1; }
+  grep -A1 'NOT TESTED' "$build.configure.log" >&2 || true
   rm -f "$build.configure.log"
   say "building"
-  cmake --build "$build" ${1:+--target "$@"}
+  [ -f "$build/build.ninja" ] || parallel=(--parallel "$(nproc)")
+  cmake --build "$build" "${parallel[@]}" ${1:+--target "$@"}
 }

@@ -2,12 +2,13 @@
 
 lacks_avx512() { [[ $("$build/tests/fastccd_digest" 1 2>&1) == *'lacks avx512'* ]]; }
 
-# All at once: what runs beside a build (below) may install packages too.
+# All at once, and first: what runs beside a build (below) cannot ask for a password.
 install_for_all() {
   local packages=(clang libclang-rt-dev clang-19)
   if [ "$(uname -m)" = x86_64 ]; then
     [[ $(dpkg --print-foreign-architectures) == *arm64* ]] || as_root dpkg --add-architecture arm64
     packages+=(qemu-user-static g++-aarch64-linux-gnu libtbb-dev:arm64 libxsimd-dev:arm64 libgmp-dev:arm64 libgtest-dev:arm64)
+    if lacks_avx512; then packages+=("${emulator_packages[@]}"); fi
   fi
   install_packages "${packages[@]}"
 }
