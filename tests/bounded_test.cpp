@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include <tbb/global_control.h>
@@ -28,6 +30,9 @@ constexpr oracle::Kind kinds[] = {oracle::Kind::vertex_face, oracle::Kind::edge_
 constexpr unsigned stacks = 2 * 128;
 constexpr unsigned most_intervals_with_stack =
     scalar::most_intervals + scalar::most_looks_to_skip + scalar::most_extensions * scalar::extension + stacks;
+// What the README promises.
+static_assert(scalar::most_intervals == 4096 && scalar::most_extensions * scalar::extension == 1024);
+
 /// Enough for every pair that is not degenerate: a path of halvings to a contact, and some on the way.
 constexpr unsigned ordinary_intervals = 512;
 
@@ -148,7 +153,13 @@ TEST(Bounded, LooksAtGlidingEdges)
         const unsigned looks = scalar::apart_until(polynomials.coefficients(), parameters, 0.0).intervals;
         EXPECT_GT(looks, 32u) << "nothing was tested";
         EXPECT_LE(looks, 384u) << "where the distance at which they count as touching does not double, thousands";
-        std::printf("gliding edges: %u looks\n", looks);
+        // README, Accuracy: after n looks within 2^(11 + n / 16) u of their size, beside what E_tol allows.
+        const SearchParameters fine{0x1p-50, 1.0, false};
+        const double toi = scalar::certified_search(PairKind::edge_edge, pair[0].data(), fine).toi;
+        double excess = 0.0;
+        if (std::isfinite(toi)) excess = oracle::excess_of_distance(oracle::Kind::edge_edge, pair, toi, 0, oracle::sum_of_extents(pair)) * 0x1p53;
+        EXPECT_LE(excess, std::exp2(11.0 + looks / 16.0));
+        std::printf("gliding edges: %u looks, reported %g u apart\n", looks, excess);
         if (pair == farther) continue;  // comes to the cap with some separations
         // And moved by as little as that: the distance of two of their points tells less well how close they are than what directions show.
         unsigned most = 0;
@@ -253,6 +264,78 @@ TEST(Bounded, NoAllocationPerPair)
             EXPECT_GE(compact, 1u) << "the list of tiles is not counted: nothing is";
             EXPECT_LE(compact, 64u + 2 * 20 * threads) << "lists grow by doubling";
         }
+    }
+}
+
+/// Every other way to ask, of fewer pairs.
+TEST(Bounded, NoAllocationPerPairInAnyCall)
+{
+    constexpr std::size_t size = 16 * 1024;
+    const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, 2};
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs;
+        generate("simcloth", kind, 103, size, pairs);
+        const PairBuffer blocks = to_buffer(pairs);
+        std::vector<double> arrays(pair_coordinates * (size + 8)), start, end;
+        std::array<const double*, pair_coordinates> columns{};
+        for (std::size_t c = 0; c < pair_coordinates; ++c) columns[c] = &arrays[c * (size + 8)];
+        std::vector<float> floats;
+        std::vector<std::int32_t> faces, edges;
+        std::vector<VertexFace> vertex_face;
+        std::vector<EdgeEdge> edge_edge;
+        for (std::size_t i = 0; i < size; ++i) {
+            for (std::size_t c = 0; c < pair_coordinates; ++c) arrays[c * (size + 8) + i] = pairs[i][c / 3][c % 3];
+            for (std::size_t p = 0; p < 8; ++p) {
+                (p < 4 ? start : end).insert((p < 4 ? start : end).end(), pairs[i][p].begin(), pairs[i][p].end());
+                for (const double x : pairs[i][p]) floats.push_back(static_cast<float>(x));
+            }
+            const auto pair = static_cast<std::int32_t>(i), first = 4 * pair;
+            faces.insert(faces.end(), {first + 1, first + 2, first + 3});
+            edges.insert(edges.end(), {first, first + 1, first + 2, first + 3});
+            vertex_face.push_back({first, pair});
+            edge_edge.push_back({2 * pair, 2 * pair + 1});
+        }
+        const MovingMesh mesh{PositionView::rows(start.data(), 4 * size), PositionView::rows(end.data(), 4 * size),
+                              IndexView::rows(faces.data(), size, 3), IndexView::rows(edges.data(), 2 * size, 2)};
+        std::vector<double> toi(size);
+        const auto times = [&](const PairView& view, const Options& options) {
+            return [&toi, view, options, kind] { ASSERT_TRUE(time_of_impact(pair_kind(kind), view, options, toi).ok()); };
+        };
+        Options separated, reference;
+        separated.minimum_separation = 1e-6;
+        reference.reference = true;
+        const std::pair<const char*, std::function<void()>> calls[] = {
+            {"interleaved", times(interleaved(pairs), {})},
+            {"floats", times(PairView::interleaved(floats.data(), size), {})},
+            {"strided", times(PairView::strided(columns, 1, size), {})},
+            {"with a separation", times(blocks.view(), separated)},
+            {"the certified search alone", times(blocks.view(), reference)},
+            {"earliest",
+             [&] {
+                 Contact contact;
+                 ASSERT_TRUE(earliest_contact(pair_kind(kind), blocks.view(), {}, contact).ok());
+             }},
+            {"indexed",
+             [&] {
+                 const Status status = kind == oracle::Kind::vertex_face ? time_of_impact(mesh, vertex_face, {}, toi) : time_of_impact(mesh, edge_edge, {}, toi);
+                 ASSERT_TRUE(status.ok());
+             }},
+            {"step",
+             [&] {
+                 CollisionFreeStep step;
+                 ASSERT_TRUE(collision_free_step(mesh, vertex_face, edge_edge, {}, step).ok());
+             }},
+        };
+        for (const auto& [name, call] : calls) EXPECT_LE(allocations_of(call), 64u) << kind_name(kind) << ' ' << name;
+
+        const std::size_t one_by_one = allocations_of([&] {
+            for (const oracle::Pair& pair : pairs) {
+                Point x0[4], x1[4];
+                for (std::size_t p = 0; p < 4; ++p) x0[p] = pair[p], x1[p] = pair[4 + p];
+                ASSERT_TRUE((kind == oracle::Kind::vertex_face ? vertex_face_toi(x0, x1) : edge_edge_toi(x0, x1)).status.ok());
+            }
+        });
+        EXPECT_EQ(one_by_one, 0u) << kind_name(kind);
     }
 }
 

@@ -80,7 +80,7 @@ TEST(Exact, VerdictIsTheOracles)
 
 TEST(Exact, ProvenIsNeverWrong)
 {
-    std::size_t proven = 0, contacts = 0;
+    std::size_t proven = 0, contacts = 0, beyond = 0, beyond_at_least = 0;
     for (const auto kind : kinds)
         for (const std::string& family : families()) {
             std::vector<oracle::Pair> pairs;
@@ -94,13 +94,20 @@ TEST(Exact, ProvenIsNeverWrong)
                 for (const Contact& contact : found.contacts) {
                     if (!contact.proven) continue;
                     ++proven;
-                    EXPECT_TRUE(oracle::exact_ccd(kind, pairs[contact.pair]).contact)
-                        << kind_name(kind) << ' ' << family << ' ' << lossless(pairs[contact.pair]);
+                    const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[contact.pair]);
+                    const auto what = [&] { return kind_name(kind) + (' ' + family) + ' ' + lossless(pairs[contact.pair]); };
+                    ASSERT_TRUE(verdict.contact) << what();
+                    // README, Accuracy: in [toi, toi + E_tol], or within 2^-6 of the step.
+                    EXPECT_LE(contact.toi, verdict.t_hi) << what();
+                    EXPECT_LE(verdict.t_lo, contact.toi + std::max(tolerance, 0x1p-6)) << what();
+                    if (verdict.t_lo > contact.toi + tolerance) ++(tolerance > 1e-12 ? beyond : beyond_at_least);
                 }
             }
         }
-    std::printf("%zu of %zu contacts of hard pairs proven\n", proven, contacts);
+    std::printf("%zu of %zu contacts of hard pairs proven, %zu and at 1e-12 %zu of these earlier than E_tol\n", proven, contacts, beyond, beyond_at_least);
     EXPECT_GT(proven, contacts / 4);
+    EXPECT_LT(beyond, proven / 1000) << "only of primitives that graze does rounding hide the sign for as long";
+    EXPECT_LT(beyond_at_least, proven / 20);
 }
 
 TEST(Exact, RandomContactsAreProven)

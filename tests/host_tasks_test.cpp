@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
+#include <tbb/task_scheduler_observer.h>
 
 #include "amount.hpp"
 #include "generators.hpp"
@@ -47,6 +48,47 @@ TEST(HostTasks, NoneBeginsWithinACall)
     });
     EXPECT_EQ(nested, 0);
     EXPECT_EQ(wrong, 0);
+}
+
+/// Counts how often one of oneTBB's threads came to work in an arena.
+class Workers : public tbb::task_scheduler_observer {
+public:
+    explicit Workers(tbb::task_arena& arena) : task_scheduler_observer{arena} { observe(true); }
+    ~Workers() override { observe(false); }
+    void on_scheduler_entry(bool is_worker) override { came_ += is_worker ? 1 : 0; }
+    [[nodiscard]] int came() const { return came_; }
+
+private:
+    std::atomic<int> came_ = 0;
+};
+
+/// To wake a thread for what is done before it comes costs more than it saves, and callers of their own threads want no others.
+TEST(HostTasks, FewPairsTakeNoThreadButTheCallers)
+{
+    const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, 4};
+    std::vector<oracle::Pair> pairs;
+    generate("uniform", oracle::Kind::edge_edge, 75, 1 << 15, pairs);
+    std::vector<double> toi(pairs.size());
+    const auto ask = [&](std::size_t count, const Options& options) {
+        const PairView view = PairView::interleaved(pairs[0][0].data(), count);
+        EXPECT_TRUE(time_of_impact(PairKind::edge_edge, view, options, std::span(toi).first(count)).ok());
+        std::vector<Contact> contacts;
+        EXPECT_TRUE(find_contacts(PairKind::edge_edge, view, options, contacts).ok());
+    };
+    tbb::task_arena arena{4};
+    Workers workers{arena};
+    Options separated, reference;
+    separated.minimum_separation = 1e-3;
+    reference.reference = true;
+    for (std::size_t i = 0; i < amount(200); ++i)
+        arena.execute([&] {
+            ask(1024, {});
+            ask(64, separated);
+            ask(64, reference);
+        });
+    EXPECT_EQ(workers.came(), 0);
+    for (int i = 0; i < 10'000 && workers.came() == 0; ++i) arena.execute([&] { ask(pairs.size(), {}); });
+    EXPECT_GT(workers.came(), 0) << "many pairs take others, or this does not notice";
 }
 
 }  // namespace

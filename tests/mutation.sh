@@ -180,7 +180,7 @@ mutant 'search: parts before where directions end again' scalar/leaf_search.hpp 
 mutant 'search: as many looks as it takes to skip' scalar/separation_search.cpp 's/if \(most < most_looks && most <= pair\.looks\) return[^;]*;//' ordered_search_test
 mutant 'search: after most looks, the time of the next' scalar/separation_search.cpp 's/return \{\.toi = pair\.time, \.intervals = looks\};(\s*\}\s*\})/return {.toi = pair.at, .intervals = looks};$1/' ordered_search_test
 mutant 'search: the leaf that ends with a skip dropped' scalar/interval_stack.hpp 's/peek\(0\)\.b < time/peek(0).b <= time/' ordered_search_test
-mutant 'search: more skipped than directions prove' scalar/leaf_search.hpp 's/skip_to\(time,/skip_to(time + 64 * parameters_.leaf_width,/' truth_test random_pairs_test stress
+mutant 'search: more skipped than directions prove' scalar/leaf_search.hpp 's/skip_to\(time,/skip_to(time + 64 * parameters_.leaf_width,/' truth_test stress
 mutant 'search: doubts in the units of each axis' kernels/no_distance.hpp 's/broadcast<L>\(0\.5\) \/ power_of_two\(extent\)/broadcast<L>(1.0)/' same_bits_test
 mutant 'search: near misses not halved' scalar/ordered_search.hpp 's/intervals > limit \|\| narrowest\(i\)/by_area || intervals > limit || narrowest(i)/' truth_test nothing_invented_test
 mutant 'search: no area certificate' scalar/ordered_search.hpp 's/ \|\| \(by_area && apart_by_area_on<kind>\(pair_, i\.a, i\.b\)\.value\)//' ordered_search_test

@@ -114,6 +114,38 @@ TEST(SmallStack, IsEnoughForEveryQuestionOnEveryIsa)
     }
 }
 
+/// The calling thread is the one that starts threads, makes an arena and deals out tiles, of pairs, of a mesh's vertices and of its boxes.
+TEST(SmallStack, IsEnoughForManyPairsOnSeveralThreads)
+{
+    const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, 3};
+    for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        std::vector<oracle::Pair> pairs;
+        for (const char* family : {"uniform", "simcloth", "degenerate"}) {
+            std::vector<oracle::Pair> more;
+            generate(family, kind, 6, 1000, more);
+            pairs.insert(pairs.end(), more.begin(), more.end());
+        }
+        expect_enough(kind, pairs);
+    }
+    // Pairs enough for boxes, and for their indices to be checked in parts.
+    constexpr std::int32_t faces = 50'000;
+    std::vector<double> start(3 * (faces + 2)), end;
+    for (std::size_t i = 0; i < start.size(); ++i) start[i] = 1e-3 * static_cast<double>(i * i % 1009);
+    end = start;
+    std::vector<std::int32_t> corners;
+    std::vector<VertexFace> vertex_face;
+    for (std::int32_t face = 0; face < faces; ++face) {
+        corners.insert(corners.end(), {face, face + 1, face + 2});
+        for (std::int32_t vertex = 0; vertex < 5; ++vertex) vertex_face.push_back({vertex * (faces / 5), face});
+    }
+    std::vector<double> toi(vertex_face.size());
+    on_small_stack([&] {
+        const MovingMesh mesh{PositionView::rows(start.data(), faces + 2), PositionView::rows(end.data(), faces + 2),
+                              IndexView::rows(corners.data(), faces, 3), {}};
+        EXPECT_TRUE(time_of_impact(mesh, vertex_face, {}, toi).ok());
+    });
+}
+
 /// The cubic is x(t) y(t) with roots at 2^-2098 and 2^-2097: exact arithmetic halves the step two thousand times to tell them apart.
 TEST(SmallStack, IsEnoughForRootsThatAreHardToTellApart)
 {

@@ -105,6 +105,9 @@ TEST(Truth, PublicHardCases)
     for (const double tolerance : tolerances) {
         Count by_kind[2];
         expect_nothing_missed_or_late(sets, tolerance, by_kind);
+        // Near misses that rounding hides; as many as there are, in the README too.
+        EXPECT_LE(by_kind[0].false_alarms, 2692u) << "vertex-face, E_tol " << tolerance;
+        EXPECT_LE(by_kind[1].false_alarms, 2585u) << "edge-edge, E_tol " << tolerance;
     }
     expect_exact_verdict(sets);
 }
@@ -118,8 +121,8 @@ TEST(Truth, PublicQueries)
     for (const double tolerance : tolerances) {
         Count by_kind[2];
         expect_nothing_missed_or_late(sets, tolerance, by_kind);
-        EXPECT_LE(by_kind[0].false_alarms, 15u) << "vertex-face, E_tol " << tolerance;
-        EXPECT_LE(by_kind[1].false_alarms, 23u) << "edge-edge, E_tol " << tolerance;
+        EXPECT_EQ(by_kind[0].false_alarms, 0u) << "vertex-face, E_tol " << tolerance;
+        EXPECT_LE(by_kind[1].false_alarms, 8u) << "edge-edge, E_tol " << tolerance;
     }
     expect_exact_verdict(sets);
 }
@@ -197,8 +200,8 @@ TEST(Truth, RegularContactIsFoundWithinTheTolerance)
                 const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i]);
                 ASSERT_EQ(found.toi[i] <= 1.0, verdict.contact);
                 if (verdict.contact && verdict.contact_class == oracle::Class::regular) {
-                    // Below 1e-9 rounding takes over, amplified where the primitives meet at a small angle.
-                    EXPECT_GE(found.toi[i], verdict.t_lo - std::max(tolerance, 1e-10));
+                    // At 1e-12 rounding takes over, amplified where the primitives meet at a small angle (Options::tolerance).
+                    EXPECT_GE(found.toi[i], verdict.t_lo - (tolerance > 1e-12 ? tolerance : 2e-12));
                     EXPECT_EQ(found.roots[i], verdict.roots);
                 }
             }
@@ -208,12 +211,15 @@ TEST(Truth, RegularContactIsFoundWithinTheTolerance)
 
 TEST(Truth, RootsOfTangentialAndCoplanarContacts)
 {
-    // f = det(r1, r2, r3) = 2 (1 - 2t)^2: the face turns about the x axis while it passes over the vertex, so that
-    // the vertex touches its plane at t = 1/2 without crossing it.
-    const oracle::Pair grazing{{{0, 0, 0}, {-1, -1, -1}, {1, -1, -1}, {0, 1, 0}, {0, 0, 0}, {-1, 1, -1}, {1, 1, -1}, {0, -1, 0}}};
+    // With s = 1 - 2t: r1 = (1 + s/2, 0, s), r2 = (-1, 1, -s), r3 = (-1, -1, -s), so f = det(r1, r2, r3) = -s^2: the vertex touches the plane
+    // of the face, within the face, at t = 1/2 without crossing it.
+    const oracle::Pair grazing{{{0, 0, 0}, {1.5, 0, 1}, {-1, 1, -1}, {-1, -1, -1}, {0, 0, 0}, {0.5, 0, -1}, {-1, 1, 1}, {-1, -1, 1}}};
     const oracle::Verdict verdict = oracle::exact_ccd(oracle::Kind::vertex_face, grazing);
+    ASSERT_EQ(verdict.contact_class, oracle::Class::tangential);
     const Answer touched = answer(oracle::Kind::vertex_face, interleaved({grazing}), {});
-    EXPECT_EQ(touched.toi[0] <= 1.0, verdict.contact);
+    EXPECT_LE(touched.toi[0], 0.5);
+    EXPECT_GE(touched.toi[0], 0.5 - 1e-6) << "about the root of u before a double root, rounding hides the sign";
+    EXPECT_EQ(touched.roots[0], 2);
 
     // Always coplanar: contact, but no number of roots.
     const oracle::Pair sliding{{{-1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {1, 0, 0}}};

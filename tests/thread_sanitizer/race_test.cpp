@@ -21,10 +21,10 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Pieces of less than a tile, which the library runs on the caller's thread.
+/// Pieces of no more than a tile, which the library runs on the caller's thread, exact or not.
 Answer one_thread_answer(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Options& options)
 {
-    constexpr std::size_t piece = 1000;
+    constexpr std::size_t piece = 64;
     Answer whole;
     for (std::size_t first = 0; first < pairs.size(); first += piece) {
         const std::size_t count = std::min(piece, pairs.size() - first);
