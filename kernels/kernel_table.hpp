@@ -120,7 +120,7 @@ struct TileScratch {
     std::uint64_t may_touch[tile_pairs / 64];
     double touch_time[tile_pairs];
     double earliest;                           ///< From the lanes: none of their times is before this.
-    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. Without a minimum separation run_tile sets none.
+    std::uint64_t is_unproven[tile_pairs / 64];  ///< Contact is possible, not proven. Without a minimum separation KernelTable::run_tile sets none.
     ScreenedQueue screened;  ///< Pairs without a linear or cubic certificate.
     PairQueue candidates;    ///< Pairs without certificates on both halves either.
     bool dense;              ///< Screening left most pairs of the group before.

@@ -8,7 +8,9 @@ namespace fastccd {
 
 namespace {
 
-thread_local const DefaultFloatingPoint* outermost = nullptr;
+// Part of each thread from its start: where it is made at its first use, as in libraries that are loaded later, that needs memory, and glibc ends
+// the program if there is none.
+[[gnu::tls_model("initial-exec")]] thread_local const DefaultFloatingPoint* outermost = nullptr;
 
 #ifdef __SSE2__
 

@@ -38,8 +38,8 @@ bool can_start(int threads) noexcept
 bool workers_available()
 {
     using Clock = std::chrono::steady_clock;
-    static std::atomic<int> most_started{0};
-    static std::atomic<Clock::time_point> next_trial{Clock::time_point{}};
+    static std::atomic<int> most_started{0}, refused{0};
+    static std::atomic<Clock::time_point> next_trial{Clock::time_point{}};  // of as many as were refused
     int most = most_started.load(std::memory_order_relaxed);
     int workers = tbb::this_task_arena::max_concurrency() - 1;
     if (workers <= most) return true;
@@ -47,8 +47,9 @@ bool workers_available()
     const std::size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     workers = static_cast<int>(std::min(static_cast<std::size_t>(workers), allowed - 1));
     if (workers <= most) return true;
-    if (Clock::now() < next_trial.load(std::memory_order_relaxed)) return false;
+    if (workers >= refused.load(std::memory_order_relaxed) && Clock::now() < next_trial.load(std::memory_order_relaxed)) return false;
     if (!can_start(workers)) {
+        refused.store(workers, std::memory_order_relaxed);
         next_trial.store(Clock::now() + std::chrono::seconds{1}, std::memory_order_relaxed);
         return false;
     }
