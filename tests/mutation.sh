@@ -371,7 +371,7 @@ mutant 'environment: the arena made in the library'\''s' scheduler/parallel_rang
 
 mutant 'tasks: those of the program begun meanwhile' scheduler/parallel_ranges.hpp 's/tbb::this_task_arena::isolate\(\[&\] \{ (tbb::parallel_for\(.*?\);) \}\);/$1/' host_tasks_test
 
-mutant 'adapters: separation to the default tolerance' kernels/include/fastccd/adapters/distance_tolerance.hpp 's/options\.distance_tolerance = distance \/ minimum_separation;/;/' adapters_test
+mutant 'adapters: separation to the default tolerance' kernels/include/fastccd/adapters/distance_tolerance.hpp 's/options\.distance_tolerance = std::min\(.*?;/;/' adapters_test
 mutant 'lists grow by what is needed alone' scheduler/fastccd.cpp 's/std::max\(needed, 2 \* list\.capacity\(\)\)/needed/' api_test
 
 # Not `most_extensions = 0`: since the search goes on along directions from the cap, it changes a few times of pairs that are degenerate for

@@ -70,11 +70,11 @@ inline bool touches(PairKind kind, const MovingPair& pair, double minimum_separa
     if (!is_finite(distance)) distance = std::numeric_limits<double>::max();  // infinite over infinite would be no number
     Options options;
     options.minimum_separation = minimum_separation;
-    // No coarser than by default, so that a pair a little farther apart than that at the start is let go. Asked before it is divided: the
-    // caller may trap divisions by zero and overflow.
-    if (distance < options.distance_tolerance * minimum_separation) options.distance_tolerance = distance / minimum_separation;
+    // No coarser than by default, so that a pair a little farther apart than that at the start is let go. Where a quotient would be beyond 1, it
+    // is that of the distance and itself: the caller may trap divisions by zero and overflow.
+    options.distance_tolerance = std::min(options.distance_tolerance, distance / std::max(distance, minimum_separation));
     const double displacement = pair.largest_displacement(kind);
-    options.tolerance = distance < displacement ? std::max(distance / displacement, std::numeric_limits<double>::min()) : 1.0;
+    options.tolerance = std::max(distance / std::max(distance, displacement), std::numeric_limits<double>::min());
     // At t_max = 0 the question is about the start alone: a pair at rest there.
     if (t_max > 0.0) options.t_max = t_max;
     const Point(&x1)[4] = t_max > 0.0 ? pair.x1 : pair.x0;
