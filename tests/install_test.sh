@@ -62,6 +62,7 @@ find_package(fastccd 0.1 QUIET COMPONENTS static)
 if(fastccd_FOUND)
   message(FATAL_ERROR "the static library without oneTBB")
 endif()
+find_package(fastccd 0.1 REQUIRED OPTIONAL_COMPONENTS static)
 END
 quietly env CXX="$cxx" cmake -S "$work/without_tbb" -B "$work/without_tbb/build" -DCMAKE_PREFIX_PATH="$prefix"
 
