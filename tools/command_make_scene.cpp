@@ -56,6 +56,11 @@ std::string quoted(const std::string& path)
 {
     constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
     if (path.find_first_not_of(plain) == std::string::npos) return path;
+    if (on_one_line(path) != path) {  // bytes as escapes, which drive no terminal
+        std::string text = "$'";
+        for (const char c : path) text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+        return text + "'";
+    }
     std::string text = "'";
     for (const char c : path) text += c == '\'' ? std::string{"'\\''"} : std::string(1, c);
     return text + "'";

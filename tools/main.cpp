@@ -45,7 +45,8 @@ void refuse_empty_values(const std::vector<std::string_view>& arguments)
 {
     for (const std::string_view argument : arguments) {
         if (argument == "--") return;
-        if (argument.starts_with("--") && argument.find('=') + 1 == argument.size()) throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument));
+        if (argument.starts_with("--") && argument.find('=') + 1 == argument.size())
+            throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument));
     }
 }
 

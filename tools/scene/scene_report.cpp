@@ -72,8 +72,7 @@ std::string invalid_vertices(const SceneTotals& totals)
         text += new_step ? fmt::format("{}step {}: {}", i == 0 ? "" : "; ", invalid.step, invalid.vertex)
                          : fmt::format(", {}", invalid.vertex);
     }
-    const std::size_t more = totals.invalid.size() - named;
-    if (more > 0) text += fmt::format(" and {} more", with_commas(more));
+    if (totals.invalid.size() > named) text += " and more, which --json lists";
     return text;
 }
 
