@@ -52,7 +52,8 @@ with tempfile.TemporaryDirectory() as folder:
     # Rates of processor time have the spread of that.
     rounds = []
     for cpu_time in (2, 3, 4):
-        stage = {**row(FAST, 100, 0), "run_name": "stage/vertex_face/avx512/screening/random", "cpu_time": cpu_time, "s/pair": cpu_time * 1e-9, "kept": 0.5}
+        stage = {**row(FAST, 100, 0), "run_name": "stage/vertex_face/avx512/screening/random", "cpu_time": cpu_time,
+                 "s/pair": cpu_time * 1e-9, "kept": 0.5}
         rounds.append([stage])
     stages = pathlib.Path(report("merge", str(pathlib.Path(folder) / "stages"), *write(folder, rounds)).stdout.strip())
     table = report("table", str(stages)).stdout

@@ -102,7 +102,8 @@ TEST(Symmetry, OtherVerdictsAreNearMisses)
                 }
             });
         };
-        for (const char* family : {"grazing", "grazing_exact", "near_boundary", "corner", "resting", "t0_contact", "t1_contact", "mixed_exponent", "f32_mixed_exponent"}) {
+        for (const char* family : {"grazing", "grazing_exact", "near_boundary", "corner", "resting", "t0_contact", "t1_contact", "mixed_exponent",
+                                   "f32_mixed_exponent"}) {
             generate(family, kind, 71, amount(1000), pairs);
             compare(family);
         }
