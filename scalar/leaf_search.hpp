@@ -86,8 +86,10 @@ public:
     [[nodiscard]] Proof proof_of_contact(double s) const
     {
         if (s == 0.0 && pair_.zero_at_start()) return Proof::none;  // nor would any interval from 0 on have a change of sign
-        // At the cap, contact may have been found in an interval that is wider than a leaf.
-        if (pair_.contact_proven(leaf_of_answer_)) return leaf_of_answer_.width() <= parameters_.leaf_width ? Proof::leaf : Proof::nearby;
+        // At the cap, contact may have been found in an interval that is wider than a leaf, and than what counts as near s.
+        const double width = leaf_of_answer_.width();
+        if (width <= std::max(parameters_.leaf_width, widest_proof) && pair_.contact_proven(leaf_of_answer_))
+            return width <= parameters_.leaf_width ? Proof::leaf : Proof::nearby;
         return proof_nearby(touch_ == none ? s : touch_);
     }
 
@@ -103,7 +105,7 @@ public:
     }
 
     [[nodiscard]] unsigned intervals() const { return search_.intervals; }
-    /// Until when the search went along directions, 0 if it did not: what is asked of a leaf before says nothing of its answer.
+    /// Until when the search went along directions, 0 if it did not: what is asked of a leaf before says nothing of its answer. (For tests.)
     [[nodiscard]] double skipped_to() const { return skipped_to_; }
     /// One that was examined by someone who shares the cap.
     void count_interval() { ++search_.intervals; }
