@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <initializer_list>
 
 #include <signal.h>
@@ -10,27 +11,27 @@
 namespace fastccd::tools {
 namespace {
 
-std::atomic<int> pending_signal = 0;  // any thread may ask for it
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not wait");
-timespec first_signal{};
+// Handlers may run in several threads at once.
+std::atomic<int> pending_signal = 0;
+std::atomic<std::int64_t> first_signal = 0;  // when it came, in nanoseconds
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free, "a signal handler must not wait");
 bool broken_pipes_ignored = false;  // by who started the process
 
 /// A second Ctrl-C ends a process that cannot get to check_interrupt. `timeout` sends a signal to its child and then to the
 /// group, so that the same one comes twice at once: only one that comes later than a finger is meant like that.
-constexpr double seconds_until_second = 0.3;
+constexpr std::int64_t nanoseconds_until_second = 300'000'000;
 
 extern "C" void note_signal(int signal)
 {
-    timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    if (pending_signal == 0) {
-        first_signal = now;
+    timespec clock{};
+    clock_gettime(CLOCK_MONOTONIC, &clock);
+    const std::int64_t now = std::int64_t{1'000'000'000} * clock.tv_sec + clock.tv_nsec;
+    std::int64_t first = 0;
+    if (first_signal.compare_exchange_strong(first, now)) {
         pending_signal = signal;
         return;
     }
-    const double seconds =
-        static_cast<double>(now.tv_sec - first_signal.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - first_signal.tv_nsec);
-    if (seconds < seconds_until_second) return;
+    if (now - first < nanoseconds_until_second) return;
     fastccd::tools::end_by(signal);  // delivered on return from here
 }
 
@@ -53,8 +54,7 @@ void install_signal_handlers()
         if (sigaction(signal, nullptr, &previous) == 0 && previous.sa_handler == SIG_IGN) continue;
         struct sigaction action {};
         action.sa_handler = note_signal;
-        // No SA_RESTART: a write blocked on a full pipe has to wake up. One handler at a time, whatever comes in.
-        for (const int other : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&action.sa_mask, other);
+        // No SA_RESTART: a write blocked on a full pipe has to wake up.
         sigaction(signal, &action, nullptr);
     }
     broken_pipes_ignored = std::signal(SIGPIPE, SIG_IGN) == SIG_IGN;
