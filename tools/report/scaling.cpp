@@ -85,7 +85,7 @@ Json piece_by_piece(std::size_t count, int threads, ReportProgress& progress, st
     for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
         double seconds = 0;
         for (std::size_t first = 0; first < count; first += pairs.size()) {
-            progress.move(done * count + first / repeats, total * count);
+            progress.move(done * count + (repeat * count + first) / repeats, total * count);
             fill_random_pairs(seed, first, pairs);
             const PairView piece = slice(pairs.view(), 0, std::min(pairs.size(), count - first));
             contacts.clear();
