@@ -23,7 +23,7 @@ static_assert(FLT_EVAL_METHOD == 0, "compile with -msse2 -mfpmath=sse");
 namespace fastccd {
 
 /// What the three certificates compare with; see the functions of the same names in ErrorBounds. Evaluated once
-/// per tile rather than in every batch.
+/// per tile rather than in every batch. On halves nothing asks for `linear`, which is 0 there.
 struct CertificateBounds {
     double cubic, quadratic, quadratic_sum, linear;
 };
@@ -58,7 +58,7 @@ struct ErrorBounds {
     /// Pairs with larger extents are left to the certified search. It scales pairs down whose coordinates differ by more than
     /// largest_extent, and a gap that underflows then is no gap for it, while lanes would see it. The differences p and q
     /// at both ends of the step are to be below: with t_max != 1 extents E bound p and r(t_max) = (1 - t_max) p + t_max q, so
-    /// |q| <= 2 E / t_max; a quarter of it covers roundings.
+    /// |q| <= 2 E / t_max; a quarter of it covers roundings. So with t_max below 2^-98 of their size no pairs are left to lanes.
     double largest_lane_extent;
 
     // ---- Bernstein coefficients over the whole interval -----------------------------------------

@@ -13,8 +13,8 @@
 
 namespace fastccd {
 
-/// Added to a bound against products that underflow. Directions are unit vectors and the largest extent is above 2^-62
-/// (see smallest_separation_extent), so this is below 2^-900 of anything that counts; a height is a sum of three products,
+/// Added to a bound against products that underflow. Directions are unit vectors and the largest extent is at least 2^-60
+/// (smallest_separation_extent), so this is below 2^-900 of anything that counts; a height is a sum of three products,
 /// each off by 2^-1075 at most, of components that scaling to the lanes' range may have moved by as much.
 inline constexpr double separation_floor = 0x1p-1020;
 
@@ -109,12 +109,17 @@ struct SeparationBounds {
     /// edges that glide along one line (bench/LIMITS_SEARCH.md).
     [[nodiscard]] static constexpr double close_gap() { return 96 * u; }
 
-    /// How far a pair may be beyond d, or (1 + tolerance) d, at the time at which a search ends, but for a cap on looks and the 16 u of
-    /// SeparationParameters::threshold; times the sum of the extents. Its computed distance is within the resolution, 128 u, or surely_certified(),
-    /// and errs by distance(), 75 u: 235. Or features have been asked, and show its distance but for 64 (feature_directions.hpp), for computed
-    /// positions, of r_i or of differences of two, which err by 2 (rho + 3), as does a height for these: 4 rho + 12. What they show is a gap within
-    /// close_gap(): 96 + 64 + 52 = 212. Or it is not certified at the time, or not for 2^-50 of it, so the exact height is at most the
-    /// threshold and height() twice, 4 rho + 20, and 40, as above: 8 rho + 136, 216.
+    /// How far a pair may be beyond d, or (1 + tolerance) d, at the time at which a search ends, but for a cap on looks; times the sum S of the
+    /// extents. With 8 more where t_max != 1, as SearchParameters::time is early by 4 u of the step, in which components move by 8 u of their
+    /// extents; and with what thresholds exceed d by, 16 u of it or, `stop`, 2 u, of S at most: the first points of both are not farther
+    /// apart than S, so with a greater d the pair is within it all along. One of these:
+    /// - Its computed distance is within the resolution, 128 u, and errs by distance(), 75 u: with 2 and 8, 213.
+    /// - It is within surely_certified(), 160 u, so that features need not be asked. Lengths there are S at most, not 3 S, and 3 u
+    ///   of that are 6 less: with 16 and 8, 253.
+    /// - Features show its distance but for 64 (feature_directions.hpp), for computed positions, of r_i or of differences of two, which err by
+    ///   2 (rho + 3), as does a height for these: 4 rho + 12. What they show is a gap within close_gap(): 96 + 64 + 52, with 16 and 8 236.
+    /// - It is not certified at the time, or not for 2^-50 of it, so the exact height is at most the threshold and height() twice, 4 rho + 20,
+    ///   and 40, as above: 8 rho + 136, with 16 and 8 240.
     [[nodiscard]] static constexpr double beyond() { return 256 * u; }
 
     // ---- Certificates of contact, with room for d (farther_certificates.hpp) ------------------------

@@ -7,7 +7,8 @@
 // the spacing of doubles, the leaf would still be reported, and if the shape does not amplify rounding, or directions show no distance either
 // (no_distance.hpp), hardly any other search would clear it. So it is reported at once, by the search and, with the same bits, by lanes; with
 // the end of the certificates as lower bound.
-// From the leaf's own polynomials (restriction.hpp), by which hardly a pair is in between.
+// All this is asked of the leaf's own polynomials (restriction.hpp): their rounding is so small that hardly any pair is neither cleared nor
+// found to meet.
 #pragma once
 
 #include <last_certificate.hpp>
@@ -118,7 +119,8 @@ inline constexpr double least_share = 0x1p-5;
 /// a volume over an area, so what is degenerate amplifies rounding by the reciprocal of that. With area, little: it is 1/39 of the terms m
 /// of an edge function, or more. A volume that is all rounding, 23 u of three such m times an extent, is a height of 39 x 3 x 23 u, some
 /// 2,700 u of the extents; an edge function that is, 13 u m, over the length of its edge another 39 x 13 u of them. In sum 3,200 u s (where
-/// the m of the other projections are no larger), and README says 2^12; hill climbing came to 2,707 u s, random pairs stay within 2^10
+/// the m of the other projections are no larger), and README says 2^12; with t_max != 1 the share of m is 31/512, and 31 u and 50 u come to
+/// 3,000 u s; hill climbing came to 2,707 u s, random pairs stay within 2^10
 /// (nothing_invented_test.cpp). Parts of a leaf have 7.7 u and 5.2 u of its coefficients more in their bounds: what is next to zero in it
 /// changes by w v times an area or length there, so that adds 39 x (3 x 7.7 + 5.2) u < 2^-42 of E_tol v, which README has beside.
 template <PairKind kind, class L>
