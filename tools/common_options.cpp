@@ -134,12 +134,6 @@ void add_separation_options(CLI::App& command, CommonOptions& options)
         ->capture_default_str();
 }
 
-std::string separation_asked(const Options& options)
-{
-    if (options.minimum_separation == 0.0) return {};
-    return fmt::format(", minimum separation {} (+ {} of it)", options.minimum_separation, options.distance_tolerance);
-}
-
 void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns)
 {
     command

@@ -44,9 +44,6 @@ void add_search_options(CLI::App& command, CommonOptions& options);
 /// A distance to keep instead of contact. After add_search_options.
 void add_separation_options(CLI::App& command, CommonOptions& options);
 
-/// For the line of a report that says what was asked; empty without a minimum separation.
-[[nodiscard]] std::string separation_asked(const Options& options);
-
 /// What to tell: hits, whose description ends in `hits_columns`, json, quiet.
 void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns);
 
@@ -87,5 +84,7 @@ struct PairRange {
 
 /// "vertex-face" or "edge-edge".
 [[nodiscard]] const char* kind_name(PairKind kind) noexcept;
+/// "vf" or "ee": as the command line has it, and files.
+[[nodiscard]] constexpr const char* short_name(PairKind kind) noexcept { return kind == PairKind::vertex_face ? "vf" : "ee"; }
 
 }  // namespace fastccd::tools

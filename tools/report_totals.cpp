@@ -15,11 +15,6 @@
 namespace fastccd::tools {
 namespace {
 
-double pairs_per_second(const Totals& totals)
-{
-    return totals.seconds > 0 ? static_cast<double>(totals.summary.pairs) / totals.seconds : 0.0;
-}
-
 /// Percentage with as many digits as tell it from 0 and 100.
 std::string share(std::size_t part, std::size_t whole)
 {
@@ -63,6 +58,39 @@ std::string counted(std::size_t number, std::string_view thing, std::string_view
     return plural.empty() ? fmt::format("{} {}s", with_commas(number), thing) : fmt::format("{} {}", with_commas(number), plural);
 }
 
+double rate(std::size_t pairs, double seconds)
+{
+    return seconds > 0 ? static_cast<double>(pairs) / seconds : 0.0;
+}
+
+std::string what_was_asked(const Options& options, std::string_view of_what)
+{
+    std::string text = fmt::format("t in [0, {}]{}, tolerance {}", options.t_max, of_what, options.tolerance);
+    if (options.reference) text += ", certified search on every pair";
+    if (options.exact) text += ", exact verdict";
+    if (options.minimum_separation > 0.0)
+        text += fmt::format(", minimum separation {} (+ {} of it)", options.minimum_separation, options.distance_tolerance);
+    return text;
+}
+
+std::string narrow_phase_speed(std::size_t pairs, double seconds, Isa isa, int threads)
+{
+    return fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {})", seconds, rate(pairs, seconds) * 1e-6, name(isa),
+                       counted(static_cast<std::size_t>(threads), "thread"));
+}
+
+void add_asked(nlohmann::ordered_json& json, const Options& options, Isa isa, int threads)
+{
+    json["isa"] = name(isa);
+    json["threads"] = threads;
+    json["tolerance"] = options.tolerance;
+    json["t_max"] = options.t_max;
+    json["reference"] = options.reference;
+    json["exact"] = options.exact;
+    json["minimum_separation"] = options.minimum_separation;
+    json["distance_tolerance"] = options.distance_tolerance;
+}
+
 void append_line(fmt::memory_buffer& report, std::string_view label, std::string_view text)
 {
     fmt::format_to(std::back_inserter(report), "{:<17}{}\n", label, on_one_line(text));
@@ -75,10 +103,7 @@ std::string text_report(const PairOptions& options, const Question& question, co
     const auto line = [&out](std::string_view label, std::string_view text) { append_line(out, label, text); };
 
     line(kind_name(options.kind), question.source);
-    line("asked", fmt::format("t in [0, {}], tolerance {}{}{}", options.narrow_phase.t_max, options.narrow_phase.tolerance,
-                              options.narrow_phase.reference ? ", certified search on every pair" : "",
-                              options.narrow_phase.exact ? ", exact verdict" : "") +
-                      separation_asked(options.narrow_phase));
+    line("asked", what_was_asked(options.narrow_phase));
     line("pairs", with_commas(sum.pairs));
     line("contacts", with_commas(sum.contacts) + share(sum.contacts, sum.pairs));
     line("  proven", with_commas(sum.proven));
@@ -99,9 +124,7 @@ std::string text_report(const PairOptions& options, const Question& question, co
     }
     line("invalid", sum.invalid == 0 ? "0" : fmt::format("{}  ({})", with_commas(sum.invalid), invalid_pairs(question, totals)));
     line("certified search", counted(sum.scalar_pairs, "pair") + share(sum.scalar_pairs, sum.pairs));
-    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {})", totals.seconds,
-                                     pairs_per_second(totals) * 1e-6, name(sum.isa),
-                                     counted(static_cast<std::size_t>(totals.threads), "thread")));
+    line("narrow phase", narrow_phase_speed(sum.pairs, totals.seconds, sum.isa, totals.threads));
     return fmt::to_string(out);
 }
 
@@ -110,7 +133,7 @@ std::string json_report(const PairOptions& options, const Question& question, co
     using Json = nlohmann::ordered_json;
     const Summary& sum = totals.summary;
     Json json;
-    json["kind"] = options.kind == PairKind::vertex_face ? "vf" : "ee";
+    json["kind"] = short_name(options.kind);
     if (!question.files.empty()) json["files"] = question.files;
     if (question.range) json["range"] = {question.range->begin, question.range->end};
     if (question.seed) json["seed"] = *question.seed;
@@ -131,15 +154,8 @@ std::string json_report(const PairOptions& options, const Question& question, co
         json["false_alarms"] = totals.truth->false_alarms;
     }
     json["seconds"] = totals.seconds;
-    json["pairs_per_second"] = pairs_per_second(totals);
-    json["isa"] = name(sum.isa);
-    json["threads"] = totals.threads;
-    json["tolerance"] = options.narrow_phase.tolerance;
-    json["t_max"] = options.narrow_phase.t_max;
-    json["reference"] = options.narrow_phase.reference;
-    json["exact"] = options.narrow_phase.exact;
-    json["minimum_separation"] = options.narrow_phase.minimum_separation;
-    json["distance_tolerance"] = options.narrow_phase.distance_tolerance;
+    json["pairs_per_second"] = rate(sum.pairs, totals.seconds);
+    add_asked(json, options.narrow_phase, sum.isa, totals.threads);
     json["scalar_pairs"] = sum.scalar_pairs;
     // File names need not be UTF-8, JSON has to be.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -19,9 +19,6 @@ inline constexpr std::array<PairKind, 2> kinds{PairKind::vertex_face, PairKind::
 /// Of the random pairs everywhere in the report, and of the hard pairs.
 inline constexpr std::uint64_t seed = 1;
 
-/// "vf", "ee": as the command line has it.
-[[nodiscard]] constexpr const char* short_name(PairKind kind) noexcept { return kind == PairKind::vertex_face ? "vf" : "ee"; }
-
 struct Plan {
     bool quick = false;
     std::size_t pairs = 0;                      ///< Random pairs of Table 1; at most so many wherever pairs are sampled.

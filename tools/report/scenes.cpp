@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>

@@ -1,5 +1,7 @@
 #include "scene_hits.hpp"
 
+#include "../common_options.hpp"
+
 namespace fastccd::tools {
 
 SceneHits::SceneHits(const std::filesystem::path& path, bool proof) : rows_{path}, proof_{proof}
@@ -9,7 +11,7 @@ SceneHits::SceneHits(const std::filesystem::path& path, bool proof) : rows_{path
 
 void SceneHits::append(std::size_t step, PairKind kind, const PairVertices& vertices, const Contact& contact)
 {
-    rows_.append(FMT_COMPILE("{},{},{},{},{},{},{:.17g}{}\n"), step, kind == PairKind::vertex_face ? "vf" : "ee", vertices[0],
+    rows_.append(FMT_COMPILE("{},{},{},{},{},{},{:.17g}{}\n"), step, short_name(kind), vertices[0],
                  vertices[1], vertices[2], vertices[3], contact.toi, !proof_ ? "" : contact.proven ? ",1" : ",0");
 }
 

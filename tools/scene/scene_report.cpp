@@ -24,16 +24,6 @@ constexpr std::size_t most_invalid_vertices_named = 10;
 
 constexpr PairKind both_kinds[] = {PairKind::vertex_face, PairKind::edge_edge};
 
-const char* short_name(PairKind kind)
-{
-    return kind == PairKind::vertex_face ? "vf" : "ee";
-}
-
-double rate(std::size_t pairs, double seconds)
-{
-    return seconds > 0 ? static_cast<double>(pairs) / seconds : 0.0;
-}
-
 std::string what_touches(const SceneContact& contact)
 {
     const auto& v = contact.vertices;
@@ -121,10 +111,7 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
     line("scene", fmt::format("{} to {}, {}", totals.frames.front(), totals.frames.back(), counted(steps, "step")));
     line("mesh", fmt::format("{}, {}, {}", counted(totals.vertices, "vertex", "vertices"), counted(totals.faces, "face"),
                              counted(totals.edges, "edge")));
-    line("asked", fmt::format("t in [0, {}] of every step, tolerance {}{}{}", asked.t_max, asked.tolerance,
-                              asked.reference ? ", certified search on every pair" : "",
-                              asked.exact ? ", exact verdict" : "") +
-                      separation_asked(asked));
+    line("asked", what_was_asked(asked, " of every step"));
 
     fmt::format_to(std::back_inserter(out), "\n{:>5} {:<4} {:>13} {:>11} {:>9} {:>9} {:>9}  {}\n", "step", "kind",
                    "candidates", "contacts", "broad, s", "narrow, s", "M pairs/s", "earliest contact");
@@ -159,9 +146,7 @@ std::string scene_text_report(const SceneOptions& options, const SceneTotals& to
     line("reading", fmt::format("{:.3g} s", totals.read_seconds));
     line("broad phase", fmt::format("{:.3g} s, {:.3g} million candidates/s", all.broad_seconds,
                                     rate(all.candidates, all.broad_seconds) * 1e-6));
-    line("narrow phase", fmt::format("{:.3g} s, {:.3g} million pairs/s ({}, {})", all.narrow_seconds,
-                                     rate(all.candidates, all.narrow_seconds) * 1e-6, name(totals.isa),
-                                     counted(static_cast<std::size_t>(totals.threads), "thread")));
+    line("narrow phase", narrow_phase_speed(all.candidates, all.narrow_seconds, totals.isa, totals.threads));
     return fmt::to_string(out);
 }
 
@@ -180,14 +165,7 @@ std::string scene_json_report(const SceneOptions& options, const SceneTotals& to
         json["invalid_vertices"].push_back({{"step", invalid.step}, {"vertex", invalid.vertex}});
     }
     json["read_seconds"] = totals.read_seconds;
-    json["isa"] = name(totals.isa);
-    json["threads"] = totals.threads;
-    json["tolerance"] = asked.tolerance;
-    json["t_max"] = asked.t_max;
-    json["reference"] = asked.reference;
-    json["exact"] = asked.exact;
-    json["minimum_separation"] = asked.minimum_separation;
-    json["distance_tolerance"] = asked.distance_tolerance;
+    add_asked(json, asked, totals.isa, totals.threads);
     json["steps"] = Json::array();
     for (std::size_t number = 0; number < totals.steps.size(); ++number) {
         const StepTotals& step = totals.steps[number];
