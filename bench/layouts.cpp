@@ -37,9 +37,8 @@ void LayoutCopy::fill(const PairBuffer& packed, PairView::Layout layout)
         for (std::size_t i = range.begin(); i != range.end(); ++i)
             for (std::size_t c = 0; c < pair_coordinates; ++c) {
                 const std::size_t at = strided ? c * column + i
-                                       : layout == PairView::Layout::interleaved
-                                           ? i * pair_coordinates + c
-                                           : (i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs;
+                                       : layout == PairView::Layout::interleaved ? i * pair_coordinates + c
+                                                                                 : blocked_index(i, c);
                 out[at] = static_cast<T>(packed.at(i, c));
             }
     });

@@ -12,8 +12,7 @@ void load_from_view(const PairView& pairs, std::size_t i, double* coordinates, s
     for (std::size_t c = 0; c < pair_coordinates; ++c) {
         switch (pairs.layout()) {
             case PairView::Layout::blocked:
-                coordinates[c * stride] = static_cast<const T*>(pairs.data())[(i / block_pairs) * block_coordinates +
-                                                                              c * block_pairs + i % block_pairs];
+                coordinates[c * stride] = static_cast<const T*>(pairs.data())[blocked_index(i, c)];
                 break;
             case PairView::Layout::interleaved:
                 coordinates[c * stride] = static_cast<const T*>(pairs.data())[i * pair_coordinates + c];

@@ -56,7 +56,7 @@ void check_packed(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, con
             for (std::size_t c = 0; c < pair_coordinates; ++c) {
                 const T x = static_cast<T>(pairs[i][c / 3][c % 3]);
                 interleaved[i * pair_coordinates + c] = columns[c * size + i] = backwards[(size - 1 - i) * pair_coordinates + c] = x;
-                blocked[i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs] = x;
+                blocked[blocked_index(i, c)] = x;
             }
         const GuardedArray<T> one_by_one{interleaved, side}, in_blocks{blocked, side}, in_columns{columns, side}, from_the_end{backwards, side};
         std::array<const T*, pair_coordinates> column{}, strided{}, last{};

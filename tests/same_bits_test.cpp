@@ -157,7 +157,7 @@ struct FloatPairs {
             for (std::size_t c = 0; c < pair_coordinates; ++c) {
                 const auto value = static_cast<float>(pairs[i][c / 3][c % 3]);
                 records[i * pair_coordinates + c] = value;
-                blocked[(i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs] = value;
+                blocked[blocked_index(i, c)] = value;
                 columns[c * pairs.size() + i] = value;
                 column[c] = &columns[c * pairs.size()];
             }

@@ -71,7 +71,7 @@ std::size_t expect_decided_as_searched(oracle::Kind kind, const std::vector<orac
     for (std::size_t i = 0; i < pairs.size(); ++i)
         for (std::size_t c = 0; c < pair_coordinates; ++c) {
             floats.push_back(static_cast<float>(pairs[i][c / 3][c % 3]));
-            float_blocks[i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs] = floats.back();
+            float_blocks[blocked_index(i, c)] = floats.back();
         }
     const GuardedArray<float> float_records{floats, Side::end};
     if (family.starts_with("f32")) {

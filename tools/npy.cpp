@@ -300,9 +300,7 @@ void NpyWriter::append(const PairView& pairs)
         for (std::size_t i = begin; i < end; ++i) {
             for (std::size_t c = 0; c < pair_coordinates; ++c) {
                 const std::size_t k = i - begin;
-                const std::size_t target = layout_ == PairView::Layout::blocked
-                                               ? k / block_pairs * block_coordinates + c * block_pairs + k % block_pairs
-                                               : k * pair_coordinates + c;
+                const std::size_t target = layout_ == PairView::Layout::blocked ? blocked_index(k, c) : k * pair_coordinates + c;
                 converted[target] = coordinate(pairs, i, c);
             }
         }

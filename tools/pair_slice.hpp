@@ -34,9 +34,7 @@ namespace fastccd::tools {
 [[nodiscard]] inline double coordinate(const PairView& view, std::size_t i, std::size_t c) noexcept
 {
     assert(i < view.size() && c < pair_coordinates && view.layout() != PairView::Layout::strided);
-    const std::size_t index = view.layout() == PairView::Layout::blocked
-                                  ? i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs
-                                  : i * pair_coordinates + c;
+    const std::size_t index = view.layout() == PairView::Layout::blocked ? blocked_index(i, c) : i * pair_coordinates + c;
     return view.scalar() == PairView::Scalar::float64
                ? static_cast<const double*>(view.data())[index]
                : static_cast<double>(static_cast<const float*>(view.data())[index]);

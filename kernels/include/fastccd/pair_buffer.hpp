@@ -48,8 +48,8 @@ public:
     [[nodiscard]] const double* data() const noexcept { return data_.get(); }
 
     /// Coordinate c (see pair_coordinates) of pair i. Neither is checked.
-    [[nodiscard]] double& at(std::size_t i, std::size_t c) noexcept { return data_[index(i, c)]; }
-    [[nodiscard]] double at(std::size_t i, std::size_t c) const noexcept { return data_[index(i, c)]; }
+    [[nodiscard]] double& at(std::size_t i, std::size_t c) noexcept { return data_[blocked_index(i, c)]; }
+    [[nodiscard]] double at(std::size_t i, std::size_t c) const noexcept { return data_[blocked_index(i, c)]; }
 
     /// Sets all 24 coordinates of pair i.
     void set(std::size_t i, std::span<const double, pair_coordinates> coordinates) noexcept
@@ -68,11 +68,6 @@ private:
 #else
         std::abort();
 #endif
-    }
-
-    [[nodiscard]] static std::size_t index(std::size_t i, std::size_t c) noexcept
-    {
-        return (i / block_pairs) * block_coordinates + c * block_pairs + i % block_pairs;
     }
 
     AlignedDoubles data_;

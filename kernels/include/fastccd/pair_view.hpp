@@ -14,6 +14,12 @@ inline constexpr std::size_t block_pairs = 8;
 inline constexpr std::size_t pair_coordinates = 24;
 inline constexpr std::size_t block_coordinates = pair_coordinates * block_pairs;
 
+/// Where the native layout has coordinate c of pair i.
+[[nodiscard]] constexpr std::size_t blocked_index(std::size_t i, std::size_t c) noexcept
+{
+    return i / block_pairs * block_coordinates + c * block_pairs + i % block_pairs;
+}
+
 /// Where the coordinates of `size` pairs lie. Nothing is copied or owned; the memory must
 /// stay valid and unchanged during a call. float coordinates are widened exactly. Any alignment
 /// of the coordinates' type will do; blocks that begin cache lines, as in PairBuffer, are fastest.
