@@ -185,8 +185,8 @@ BoxScreen MeshBoxes::screen(PairKind kind, const IndexedSource& source, std::siz
         if (pairs / 2 < source.vertex_count + source.primitive_count) return {};
         try {
             set = make(kind, source);
-        } catch (const std::bad_alloc&) {
-            // Without boxes, then.
+        } catch (...) {
+            // Without boxes, then: they save time, and nothing else depends on them.
         }
         if (set == nullptr) return {};
         // Another thread may have made them meanwhile: waiting for it, inside a task, could be waiting for oneself.
