@@ -87,9 +87,9 @@ FASTCCD_INLINE void mark_reported(TileScratch& scratch, std::size_t count)
         for (unsigned k = 0; k < 64; k += Lane<L>::width) {
             const L time = Lane<L>::load(&scratch.time[i + k]);
             word |= std::uint64_t{Lane<L>::bits(less(time, infinity))} << k;
-            smallest = min(time, smallest);  // in this order a NaN, left there past the last pair, changes nothing
+            smallest = min(time, smallest);
         }
-        scratch.reported[i / 64] = count - i < 64 ? word & ((std::uint64_t{1} << (count - i)) - 1) : word;
+        scratch.reported[i / 64] = word;  // past the last pair times are +infinity, as clear_results() left them
     }
     alignas(64) double lanes[Lane<L>::width];
     Lane<L>::store(lanes, smallest);
