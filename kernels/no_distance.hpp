@@ -24,7 +24,8 @@ FASTCCD_INLINE RelativeMotion<L> with_normalized_extents(const RelativeMotion<L>
 }
 
 /// A pair this close, in shares of the distance at which the search along directions stops (SeparationParameters::resolution), counts as one
-/// that is not apart, but at time 0. Of pairs that stay in one plane a look tells nearly all so; the whole of it would report more near misses.
+/// that is not apart, but at time 0. With this share one look settles nearly all pairs that stay in one plane; with all of that
+/// distance more near misses would be reported.
 inline constexpr double share_of_resolution = 0.25;
 
 /// What the direction in which a pair is farthest apart at a time shows. None: it proves nothing there, or the pair is as close as that.

@@ -9,8 +9,9 @@ namespace fastccd {
 inline constexpr unsigned most_lanes = 8;
 
 /// Bernstein coefficients over the whole interval [0, 1], or a leaf of it (restriction.hpp), of the pair as scaled by the search
-/// (scalar/scaling.hpp), and the bounds of what is computed from them on any part of it; of those of a leaf, once add_rounding_on_parts is
-/// done, before that of themselves. T: double, or a lane type, for as many pairs side by side.
+/// (scalar/scaling.hpp). A `bound` is that of whatever is computed from such coefficients on any part of the interval; those of a leaf are at
+/// first bounds of its coefficients alone, and hold on parts of it after add_rounding_on_parts(). T: double, or a lane type, for as many pairs
+/// side by side.
 template <class T>
 struct PolynomialsOf {
     /// One component of an edge function (visit_edge_functions).

@@ -31,7 +31,7 @@ struct SeparationRecord {
     L looks;                    ///< How often the pair has been looked at.
     L purpose;                  ///< Of the next look: one of those below.
     L at;                       ///< Time of the next look.
-    // While looking ahead; of a pair that has not been looked at at `time` yet, 0, `time` and 0:
+    // While looking ahead. Before the first look at `time`, high is `time`, the others are 0:
     Vector3<L> n;  ///< Vector at `time`,
     L high;        ///< how far it reaches,
     L last_time, last_gap;  ///< the last time the search had got to, and the distance then, from below.

@@ -129,7 +129,7 @@ SearchResult search_on(const PairCoefficients& coefficients, SearchParameters pa
     SeparationRecord<double> pair{};
     pair.r = with_normalized_extents(motion_of<double>(coefficients));
     pair.extents = extents(pair.r);
-    pair.time = pair.at = pair.window_low = pair.window_high = time;
+    pair.time = pair.at = pair.high = pair.window_low = pair.window_high = time;
     return walk<kind, AskedFor::contact>(pair, parameters, 1.0, most);
 }
 

@@ -14,8 +14,8 @@ using Range = tbb::blocked_range<std::size_t>;
 
 /// Whether the system lets this process have the threads that oneTBB may start for the caller's arena. oneTBB's workers start one
 /// another, and if the system refuses one to a worker (a limit on processes or memory), that ends the program. So the
-/// first time that a call wants more threads than any before it, as many are started here and joined, as a trial, and if that fails, as many
-/// or more after a second at the earliest. False: keep to the caller's thread.
+/// first call that wants more threads than any before it starts and joins as many, as a trial. For a second after a refusal, as many or more
+/// are refused without one. False: keep to the caller's thread.
 bool workers_available();
 
 /// The arena of a thread that has none is made at its first use, and gives all its tasks, those that the program starts later, too, the

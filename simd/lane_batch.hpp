@@ -66,7 +66,7 @@ struct Lane<xsimd::batch<double, A>> : BatchArithmetic<double, A> {
 
     using Screening = xsimd::batch<float, A>;
     static constexpr bool screens_scenes_in_either = Traits::screens_scenes_in_either;
-    /// Both rounded, one behind the other, and back.
+    /// Both rounded to single precision, `low` in the first lanes and `high` behind it; widened() gives back either part.
     static FASTCCD_INLINE Screening narrowed(Batch low, Batch high) { return Traits::narrowed(low, high); }
     template <unsigned part>
     static FASTCCD_INLINE Batch widened(Screening x)

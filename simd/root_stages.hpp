@@ -303,7 +303,7 @@ private:
     }
 
     /// Roots after a pair's first have not been seen by decide_quickly(), and a few lie so close to a leaf's end that they certainly
-    /// cross in neither leaf. Rare, as above.
+    /// cross in neither leaf. Seldom run, hence not inlined.
     __attribute__((noinline)) void look_again(const PairRecord<L>& root, unsigned lanes)
     {
         lanes &= ~Lane<L>::bits(look_around(root).absent);

@@ -1,8 +1,8 @@
 // The command `fastccd`.
 //
-// Exit status: 0 fine (invalid pairs included: they are answered), 1 a file or stream cannot be used,
-// 2 the command line is wrong; otherwise ended by a signal (130 for Ctrl-C and 141 when the reader of the
-// output went away, as shells count).
+// Exit status: 0 fine (invalid pairs included: they are answered), 1 a file or stream cannot be used, or memory
+// or threads are refused, 2 the command line is wrong; otherwise ended by a signal (130 for Ctrl-C and 141 when the
+// reader of the output went away, as shells count).
 #include <algorithm>
 #include <cerrno>
 #include <csignal>

@@ -46,7 +46,7 @@ public:
         if (data == nullptr) return {data, data, data, 1, n};
         return {data, data + n, data + 2 * n, 1, n};
     }
-    /// Vertex i at x[i * stride], y[i * stride], z[i * stride]; stride in elements.
+    /// Vertex i at x[i * stride], y[i * stride], z[i * stride]; stride in elements, may be negative.
     template <class T>
     static PositionView xyz(const T* x, const T* y, const T* z, std::ptrdiff_t stride, std::size_t n) noexcept
     {
@@ -80,14 +80,16 @@ private:
     bool is_float_ = false;
 };
 
-/// n rows of vertex indices: 3 a face, 2 an edge, in either storage order.
+/// n rows of indices of vertices, from 0: 3 a face, 2 an edge, in either storage order.
 struct IndexView {
     const std::int32_t* data = nullptr;
     std::size_t size = 0;            ///< Rows.
     std::ptrdiff_t row_stride = 0;     ///< Elements from a row to the next,
     std::ptrdiff_t column_stride = 0;  ///< and within a row; neither may be 0 where there is more than one.
 
+    /// n x `columns` (3 or 2), one row after the other.
     static IndexView rows(const std::int32_t* data, std::size_t n, int columns) noexcept { return {data, n, columns, 1}; }
+    /// 3 or 2 columns of n, one after the other.
     static IndexView columns(const std::int32_t* data, std::size_t n) noexcept
     {
         return {data, n, 1, static_cast<std::ptrdiff_t>(n)};

@@ -8,7 +8,7 @@
 
 namespace fastccd {
 
-/// Lower-case name: "scalar", "sse2", "avx2", "avx512", "neon", "automatic".
+/// Lower-case name: "scalar", "sse2", "avx2", "avx512", "neon", "automatic"; "unknown" for what is none of the enumerators.
 [[nodiscard]] FASTCCD_API const char* name(Isa isa) noexcept;
 /// The instruction set of that name; none if there is no such name.
 [[nodiscard]] FASTCCD_API std::optional<Isa> isa_from_name(std::string_view name) noexcept;
