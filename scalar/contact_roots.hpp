@@ -7,6 +7,7 @@
 // both sides as a tangential (double) root.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include <leaf_search.hpp>
@@ -38,7 +39,7 @@ public:
                 if (open_) look_behind_cluster(i);
             } else if (one_variation(f) && pair_.included(i)) {
                 see_sign(f.c0, i.a);
-                ++odd_;
+                count_change();
             } else if (width > leaf_width_ && !(flat(f) && width <= widest_flat)) {
                 stack.push_halves(i);
                 continue;
@@ -53,6 +54,7 @@ public:
             see_sign(f.c3, i.b);
         }
         if (open_) close_cluster(0);
+        leave_neighbourhood();
         // A cubic has three roots: beside two across which its sign changes there is no double one, and of clusters that look like
         // double roots at most one is. (Odd ones are three at most as well, but for those at the ends of the step.)
         const unsigned roots = odd_ + (tangential_ && odd_ < 2 ? 2 : 0);
@@ -95,6 +97,8 @@ private:
         last_sign_ = sign(value);
         last_time_ = time;
         if (open_) close_cluster(last_sign_);
+        // The exact value is above two bounds: while it does not fall, none that follows is uncertain, as next to one bound it may be.
+        if (std::abs(value) > 3.0 * pair_.cubic_bound()) leave_neighbourhood();
     }
 
     /// What is apart may be long, and have roots without contact: beside a cluster its sign is that of the nearest time at which it is
@@ -120,9 +124,23 @@ private:
         open_ = false;
         if (before_ == 0 && after == 0) countable_ = false;
         if (before_ != 0 && before_ == after)
-            tangential_ = true;
+            tangential_here_ = true;
         else
-            ++odd_;
+            count_change();
+    }
+
+    void count_change()
+    {
+        ++odd_;
+        changes_here_ = true;
+    }
+
+    /// Between two times at which the cubic is certain by far, clusters without a change of sign are part of the root of one with such a change:
+    /// around a triple root, where it is hardly certain, it may be uncertain again.
+    void leave_neighbourhood()
+    {
+        tangential_ |= tangential_here_ && !changes_here_;
+        tangential_here_ = changes_here_ = false;
     }
 
     const PairPolynomials<kind>& pair_;
@@ -135,6 +153,7 @@ private:
     double last_time_ = 0.0;  ///< and when.
     unsigned odd_ = 0;        ///< Roots across which the sign changes, or that lie at an end of the step.
     bool tangential_ = false;
+    bool tangential_here_ = false, changes_here_ = false;  ///< Since the cubic was certain by far.
 };
 
 }  // namespace fastccd::scalar

@@ -273,7 +273,10 @@ mutant 'range: subnormal times rounded up' kernels/search_parameters.hpp 's/prod
 mutant 'range: ties of subnormal times left out' scheduler/shared_best.hpp 's/memory_order_relaxed\) \+ 0x1p-1072/memory_order_relaxed)/' collision_free_step_test
 mutant 'roots: sign after a cluster from far away' scalar/contact_roots.hpp 's/if \(open_\) look_behind_cluster\(i\);//' root_counts_test
 mutant 'roots: sign before a cluster from far away' scalar/contact_roots.hpp 's/look_ahead_of_cluster\(i\.a\);//' root_counts_test
-mutant 'roots: clusters add up' scalar/contact_roots.hpp 's/tangential_ = true;/odd_ += 2;/' root_counts_test
+mutant 'roots: a tangential one beside a triple one' scalar/contact_roots.hpp 's/tangential_here_ && !changes_here_/tangential_here_/' root_counts_test
+mutant 'roots: one bound is certain by far' scalar/contact_roots.hpp 's/3\.0 \* pair_\.cubic_bound\(\)/pair_.cubic_bound()/' root_counts_test
+mutant 'roots: nothing is certain by far' scalar/contact_roots.hpp 's/> 3\.0 \* pair_\.cubic_bound\(\)/> 1e300/' root_counts_test
+mutant 'roots: clusters add up' scalar/contact_roots.hpp 's/tangential_here_ = true;/odd_ += 2;/' root_counts_test
 mutant 'range: roots as coarse as times' scalar/contact_roots.hpp 's/widest_leaf = 0x1p-30/widest_leaf = 1/' extreme_range_test
 
 # ---- Area inclusion loosened

@@ -91,5 +91,36 @@ TEST(RootCounts, SimpleRootsAtTheEndsOfIntervals)
     }
 }
 
+/// Pairs that the step mirrors at the origin, where all points meet halfway, so the cubic is (1 - 2 t)^3 times that at the start: one root,
+/// where it changes sign. Around it, its values are all rounding for a long while. With small integers among the coordinates it is
+/// little rounding: next to where it is certain, values differ by less than that.
+TEST(RootCounts, TripleRootsCountOnce)
+{
+    std::mt19937_64 random{11};
+    std::uniform_int_distribution<int> whole{-3, 3};
+    std::uniform_real_distribution<double> any{-1.0, 1.0};
+    for (const auto kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        std::vector<oracle::Pair> pairs(amount(20000));
+        for (oracle::Pair& pair : pairs)
+            for (std::size_t i = 0; i < 4; ++i)
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    pair[i][axis] = whole(random) < 0 ? any(random) : whole(random);
+                    pair[i + 4][axis] = -pair[i][axis];
+                }
+        for (const double tolerance : {1e-9, 1e-12, 1e-15}) {
+            Options options;
+            options.tolerance = tolerance;
+            const Answer found = answer(kind, interleaved(pairs), options);
+            std::size_t once = 0;
+            for (std::size_t i = 0; i < pairs.size(); ++i) {
+                if (found.roots[i] == 0) continue;  // flat from the start
+                ASSERT_EQ(found.roots[i], 1) << tolerance << ' ' << lossless(pairs[i]);
+                ++once;
+            }
+            EXPECT_GT(once, pairs.size() - pairs.size() / 10) << tolerance;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace fastccd::testing
