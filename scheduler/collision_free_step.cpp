@@ -13,8 +13,6 @@ namespace fastccd {
 
 namespace {
 
-constexpr std::size_t no_pair = std::numeric_limits<std::size_t>::max();
-
 /// A worker that also remembers invalid pairs.
 struct StepWorker : TileWorker {
     std::size_t invalid_before = 0;       ///< Invalid pairs up to its previous tile.

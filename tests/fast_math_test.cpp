@@ -1,4 +1,4 @@
-// The adapters in a program that is compiled and linked with -ffast-math. Only the library itself is not.
+// The headers in a program that is compiled and linked with -ffast-math. Only the library itself is not.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -73,6 +73,27 @@ TEST(FastMath, WhatCannotBeAnsweredThrows)
     }
     EXPECT_THROW(ask(oracle::Kind::vertex_face, falling, toi, 0.0, 1.0, std::bit_cast<double>(quiet_nan)), std::invalid_argument);
     EXPECT_THROW(ask(oracle::Kind::vertex_face, falling, toi, -0.1), std::invalid_argument);
+}
+
+/// What headers compute by themselves.
+TEST(FastMath, NoContactIsTheEarliestOfNone)
+{
+    const auto toi_of = [](const Summary& summary) { return std::bit_cast<std::uint64_t>(summary.earliest.toi); };
+    const double apart[pair_coordinates] = {0, 0, 1, -1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 1, -1, -1, 0, 1, -1, 0, 0, 1, 0};
+    const double falling[pair_coordinates] = {0, 0, 1, -1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, -1, -1, -1, 0, 1, -1, 0, 0, 1, 0};
+    Summary sum;
+    for (std::size_t piece = 0; const double* const pair : {apart, falling, apart, falling}) {
+        Summary part;
+        std::vector<Contact> contacts;
+        ASSERT_TRUE(find_contacts(PairKind::vertex_face, PairView::interleaved(pair, 1), {}, contacts, nullptr, &part).ok());
+        ASSERT_EQ(part.earliest.pair == no_pair, contacts.empty());
+        sum.add(part, piece);
+        ASSERT_EQ(sum.earliest.pair, piece == 0 ? no_pair : 1u) << "after piece " << piece;
+        ASSERT_EQ(toi_of(sum) == infinity, piece == 0);
+        ++piece;
+    }
+    EXPECT_EQ(toi_of(Summary{}), infinity);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(PairToi{}.toi), quiet_nan);
 }
 
 }  // namespace

@@ -140,8 +140,8 @@ test_other_compiler() {
   local here=$build/digest-of-gcc.txt pairs=60 clang19=$build-clang19
   "$build/tests/fastccd_digest" $pairs >"$here"
   CC=clang-19 CXX=clang++-19 build=$clang19 configure_and_build -DFASTCCD_TOOLS=OFF -DFASTCCD_TESTS=ON -DFASTCCD_BENCHMARKS=OFF \
-    -DFASTCCD_WERROR=ON -- fastccd_digest api_test c_interface_test adapters_test
+    -DFASTCCD_WERROR=ON -- fastccd_digest api_test c_interface_test adapters_test fast_math_test
   say "clang 19"
   "$clang19/tests/fastccd_digest" $pairs | cmp - "$here"
-  ctest --test-dir "$clang19" --output-on-failure --tests-regex '^(api_test|c_interface_test|adapters_test)$'
+  ctest --test-dir "$clang19" --output-on-failure --tests-regex '^(api_test|c_interface_test|adapters_test|fast_math_test)$'
 }

@@ -17,7 +17,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -90,10 +89,10 @@ struct CollisionFreeStep {
     /// Nothing touches in [0, step): the smallest toi of all candidates. Without any contact it is t_max, and nothing
     /// touches in [0, t_max] either. A toi is a lower bound, so the step is safe as it is; scale it to keep a distance.
     double step = 0.0;
-    PairKind kind = PairKind::vertex_face;                       ///< Of the pair that limits the step,
-    std::size_t pair = std::numeric_limits<std::size_t>::max();  ///< and its index among those; SIZE_MAX: none does.
+    PairKind kind = PairKind::vertex_face;  ///< Of the pair that limits the step,
+    std::size_t pair = no_pair;             ///< and its index among those; SIZE_MAX: none does.
 
-    [[nodiscard]] constexpr bool limited() const noexcept { return pair != std::numeric_limits<std::size_t>::max(); }
+    [[nodiscard]] constexpr bool limited() const noexcept { return pair != no_pair; }
 };
 
 /// The largest step that vertex-face and edge-edge candidates together allow: the minimum of their dense answers, ties

@@ -1,6 +1,7 @@
 // Options, results and errors of the public interface.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -56,6 +57,12 @@ struct Options {
     double distance_tolerance = 1e-6;
 };
 
+/// Index of no pair: SIZE_MAX.
+inline constexpr std::size_t no_pair = std::numeric_limits<std::size_t>::max();
+/// toi of what does not touch: +infinity. Written as bits, since to compilers that are told of none (-ffast-math) that of std::numeric_limits may
+/// be any number.
+inline constexpr double no_contact = std::bit_cast<double>(std::uint64_t{0x7ff} << 52);
+
 /// One contact of a compact result.
 struct Contact {
     std::size_t pair;  ///< Index of the pair in the input.
@@ -79,8 +86,7 @@ struct Summary {
     std::size_t invalid = 0;       ///< Pairs with a NaN or an infinity.
     std::size_t scalar_pairs = 0;  ///< Pairs that the lanes leave to the search for one pair at a time. No part of the answer:
                                    ///< may depend on instruction set, processor and threads.
-    Contact earliest{std::numeric_limits<std::size_t>::max(),
-                     std::numeric_limits<double>::infinity()};  ///< Smallest toi, ties to the smaller index.
+    Contact earliest{no_pair, no_contact};  ///< Smallest toi, ties to the smaller index.
     Isa isa = Isa::automatic;      ///< Kernels that ran.
 
     /// Adds the totals of another call, whose pairs are counted from `first` on in the whole: for pairs of one kind that come in pieces.
@@ -96,10 +102,10 @@ struct Summary {
         invalid += part.invalid;
         scalar_pairs += part.scalar_pairs;
         if (isa == Isa::automatic) isa = part.isa;
-        if (part.earliest.toi == std::numeric_limits<double>::infinity()) return;
+        if (part.earliest.pair == no_pair) return;
         Contact other = part.earliest;
         other.pair += first;
-        if (other.toi < earliest.toi || (other.toi == earliest.toi && other.pair < earliest.pair)) earliest = other;
+        if (earliest.pair == no_pair || other.toi < earliest.toi || (other.toi == earliest.toi && other.pair < earliest.pair)) earliest = other;
     }
 };
 
@@ -126,7 +132,7 @@ enum class Error : std::uint8_t {
 /// Outcome of a call: `error` and, where one pair, face or edge is at fault, its number and the index it holds.
 struct Status {
     Error error = Error::none;
-    std::size_t pair = std::numeric_limits<std::size_t>::max();
+    std::size_t pair = no_pair;
     std::int64_t index = 0;
 
     [[nodiscard]] constexpr bool ok() const noexcept { return error == Error::none; }

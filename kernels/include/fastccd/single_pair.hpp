@@ -2,7 +2,8 @@
 #pragma once
 
 #include <array>
-#include <limits>
+#include <bit>
+#include <cstdint>
 #include <span>
 
 #include <fastccd/export.h>
@@ -17,7 +18,7 @@ using Point = std::array<double, 3>;
 struct PairToi {
     /// As in the dense answer: lower bound of the first time of contact in [0, t_max]; +infinity: certainly apart; NaN: a
     /// coordinate is NaN or infinite, or there is an error.
-    double toi = std::numeric_limits<double>::quiet_NaN();
+    double toi = std::bit_cast<double>(std::uint64_t{0x7ff8} << 48);
     bool proven = false;    ///< See Contact::proven.
     bool at_start = false;  ///< See Contact::at_start.
     Status status;          ///< An error in the options; with Options::exact also out_of_memory.

@@ -18,10 +18,11 @@ namespace fastccd::adapters {
 using Vector = Eigen::Ref<const Eigen::Vector3d>;
 
 // By their bits, because this is compiled with the options of whoever includes it: with -ffast-math, compilers take it for granted that
-// there are no infinities and no NaN, and std::isfinite(+infinity), which is the answer for a pair that is apart, is true.
+// there are no infinities and no NaN, and std::isfinite(+infinity), which is the answer for a pair that is apart, is true. And by reference, as
+// clang 19 takes that for granted of arguments, too.
 
-inline bool is_nan(double x) { return std::bit_cast<std::uint64_t>(x) << 1 > std::uint64_t{0x7ff} << 53; }
-inline bool is_finite(double x) { return std::bit_cast<std::uint64_t>(x) << 1 < std::uint64_t{0x7ff} << 53; }
+inline bool is_nan(const double& x) { return std::bit_cast<std::uint64_t>(x) << 1 > std::uint64_t{0x7ff} << 53; }
+inline bool is_finite(const double& x) { return std::bit_cast<std::uint64_t>(x) << 1 < std::uint64_t{0x7ff} << 53; }
 
 /// Four points of a pair at both ends of the step.
 struct MovingPair {
