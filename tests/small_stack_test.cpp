@@ -13,17 +13,16 @@
 
 #include <tbb/global_control.h>
 
-#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
 namespace {
 
-/// Frames of instrumented code are several times as large. Some systems give no thread less than PTHREAD_STACK_MIN.
+/// Some systems give no thread less than PTHREAD_STACK_MIN.
 std::size_t stack_bytes()
 {
-    constexpr std::size_t promised = (sanitized ? 1024 : 64) * 1024;
+    constexpr std::size_t promised = 64 * 1024;
     return std::max(promised, static_cast<std::size_t>(PTHREAD_STACK_MIN));
 }
 
@@ -108,7 +107,7 @@ TEST(SmallStack, IsEnoughForEveryQuestionOnEveryIsa)
         for (const std::string& family : families())
             for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
                 std::vector<oracle::Pair> pairs;
-                generate(family, kind, 5, amount(16), pairs);
+                generate(family, kind, 5, 16, pairs);
                 expect_enough(kind, pairs);
             }
     }
