@@ -16,7 +16,7 @@ install_for_all() {
 # For the sanitized build, whose kernel for AVX-512 takes longest of all to compile; without AVX-512 only the ordinary one is run, emulated.
 avx512_if_here() { lacks_avx512 && echo OFF || echo ON; }
 
-# AddressSanitizer and UndefinedBehaviorSanitizer on all tests but a few (tests/CMakeLists.txt says which), and some seconds of fuzzing in
+# AddressSanitizer and UndefinedBehaviorSanitizer on most tests (tests/CMakeLists.txt and tools.cmake say on which not), and some seconds of fuzzing in
 # the same build.
 test_sanitized_and_fuzz() {
   local seconds=${FASTCCD_FUZZ_SECONDS:-20} sanitized=$build-sanitized avx512
