@@ -4,7 +4,7 @@
 // Where inclusion is strict over an interval, the contact roots in it are the roots of the cubic, and one sign
 // variation of its Bernstein coefficients is exactly one root (Descartes). Intervals that stay unclear down to
 // a leaf form clusters: a cluster across which the sign changes counts as one root, one with the same sign on
-// both sides as a tangential (double) root.
+// both sides as a tangential (double) root, unless it is part of one at which the sign changes (leave_neighbourhood).
 #pragma once
 
 #include <cmath>

@@ -34,7 +34,8 @@ struct Options {
     /// this, too, as the sign of their cubic is lost in rounding so close to the root: random pairs by less than 1e-12.
     /// Positive and finite; values below 2^-50 t_max act as that.
     double tolerance = 1e-9;
-    /// Contact is searched in [0, t_max], 0 < t_max <= 1. (Below 2^-98 of their size, all pairs are left to the slower search for one pair.)
+    /// Contact is searched in [0, t_max], 0 < t_max <= 1. (Below 2^-98 of their size, pairs without
+    /// a minimum separation are all left to the slower search for one pair.)
     double t_max = 1.0;
     /// Which kernels to run; Isa::automatic honours the environment variable FASTCCD_ISA.
     Isa isa = Isa::automatic;
