@@ -1,13 +1,9 @@
-// The stages of the pipeline, one by one. Compiled once per instruction set, like simd/isa_kernels.cpp and with the same
-// flags, in a namespace of its own.
+// The stages of the pipeline, one by one. Compiled once per instruction set, like the kernels and with the same flags, in a namespace of its own.
 //
 // Each stage reads its input from queues as the pipeline does and hands its results to `keep`, which costs nothing but
 // makes the compiler compute them: the cost of queueing what goes on is the pipeline's, not the stage's.
+#include <kernel_lane.hpp>
 #include <stage_table.hpp>
-
-#if defined(FASTCCD_KERNEL_ARCH)
-#include <lane_batch.hpp>
-#endif
 
 #include <area_inclusion.hpp>
 #include <halves_certificate.hpp>
@@ -18,15 +14,9 @@
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-#if defined(FASTCCD_KERNEL_ARCH)
-using StageLane = xsimd::batch<double, xsimd::FASTCCD_KERNEL_ARCH>;
-#else
-using StageLane = double;
-#endif
-
 namespace {
 
-using L = StageLane;
+using L = KernelLane;
 constexpr unsigned width = Lane<L>::width;
 
 #if defined(__aarch64__)

@@ -1,27 +1,21 @@
-// The kernels of one instruction set. Compiled once for each, with FASTCCD_KERNEL_ISA naming it and
-// FASTCCD_KERNEL_NAMESPACE a namespace of its own; nothing here may include standard containers or
-// define anything the linker could share with code for another instruction set.
-#include <kernel_table.hpp>
-
-#if defined(FASTCCD_KERNEL_ARCH)
-#include <lane_batch.hpp>
-#endif
+// The table of one instruction set's kernels, and those that are not in files of their own.
+#include <kernel_lane.hpp>
 
 #include <interval_certificates.hpp>
-#include <run_tile.hpp>
+#include <tile_kernels.hpp>
 #include <touching_pairs.hpp>
 
 namespace fastccd::FASTCCD_KERNEL_NAMESPACE {
 
-#if defined(FASTCCD_KERNEL_ARCH)
-using KernelLane = xsimd::batch<double, xsimd::FASTCCD_KERNEL_ARCH>;
-#else
-using KernelLane = double;
-#endif
-
 namespace {
 
-void run_kernel_tile(const TileRequest& request, TileScratch& scratch) { run_tile<KernelLane>(request, scratch); }
+void run_tile(const TileRequest& request, TileScratch& scratch)
+{
+    if (request.kind == PairKind::vertex_face)
+        run_vertex_face_tile(request, scratch);
+    else
+        run_edge_edge_tile(request, scratch);
+}
 
 template <PairKind kind, class L>
 unsigned apart_on_lanes(const PairCoefficients& pair, const double* starts, const double* ends, unsigned met, bool by_area)
@@ -51,7 +45,7 @@ constexpr IntervalKernel interval_kernel()
 }  // namespace
 
 extern const KernelTable table;
-const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_kernel_tile, touching_block<KernelLane, false>, touching_block<KernelLane, true>,
+const KernelTable table{Isa::FASTCCD_KERNEL_ISA, run_tile, touching_block<KernelLane, false>, touching_block<KernelLane, true>,
                         interval_kernel<KernelLane>()};
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE

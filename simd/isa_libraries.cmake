@@ -1,4 +1,4 @@
-# One source, compiled once per instruction set: fastccd_add_isa_kernels(TARGET) adds the objects.
+# The kernels, compiled once per instruction set: fastccd_add_isa_kernels(TARGET) adds the objects.
 
 include(CheckCXXCompilerFlag)
 
@@ -43,7 +43,8 @@ function(fastccd_add_isa_kernels target)
   endif()
 
   foreach(isa IN LISTS portable wide)
-    add_library(fastccd_${isa} OBJECT ${PROJECT_SOURCE_DIR}/simd/isa_kernels.cpp)
+    add_library(fastccd_${isa} OBJECT ${PROJECT_SOURCE_DIR}/simd/vertex_face_kernels.cpp ${PROJECT_SOURCE_DIR}/simd/edge_edge_kernels.cpp
+      ${PROJECT_SOURCE_DIR}/simd/isa_kernels.cpp)
     target_include_directories(fastccd_${isa} PRIVATE
       ${PROJECT_SOURCE_DIR}/kernels/include ${PROJECT_SOURCE_DIR}/kernels ${PROJECT_SOURCE_DIR}/simd)
     target_compile_definitions(fastccd_${isa} PRIVATE
@@ -72,7 +73,7 @@ function(fastccd_add_isa_kernels target)
       # g++ 12 takes the deliberately undefined operand of its own AVX-512 intrinsics for a mistake (GCC bug 105593).
       target_compile_options(fastccd_${isa} PRIVATE -Wno-uninitialized -Wno-maybe-uninitialized)
     endif()
-    set_target_properties(fastccd_${isa} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+    set_target_properties(fastccd_${isa} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden UNITY_BUILD OFF)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:fastccd_${isa}>)
   endforeach()
 endfunction()

@@ -1,4 +1,4 @@
-// One tile by the lanes of one type, whatever is asked and however its pairs lie.
+// One tile of pairs of one kind by the lanes of one type, whatever is asked and however its pairs lie.
 #pragma once
 
 #include <indexed_pairs.hpp>
@@ -28,8 +28,9 @@ FASTCCD_INLINE void run_packed_tile(const TileRequest& request, TileScratch& scr
     }
 }
 
+/// See KernelTable::run_tile.
 template <PairKind kind, class L>
-FASTCCD_INLINE void run_tile_of(const TileRequest& request, TileScratch& scratch)
+FASTCCD_INLINE void run_tile(const TileRequest& request, TileScratch& scratch)
 {
     const PairView* const pairs = request.source->view;
     if (pairs == nullptr) return run_tile_from<kind, L, IndexedPairs<kind, L>>(request, scratch);
@@ -37,16 +38,6 @@ FASTCCD_INLINE void run_tile_of(const TileRequest& request, TileScratch& scratch
         run_packed_tile<kind, L, double>(request, scratch);
     else
         run_packed_tile<kind, L, float>(request, scratch);
-}
-
-/// See KernelTable::run_tile.
-template <class L>
-FASTCCD_INLINE void run_tile(const TileRequest& request, TileScratch& scratch)
-{
-    if (request.kind == PairKind::vertex_face)
-        run_tile_of<PairKind::vertex_face, L>(request, scratch);
-    else
-        run_tile_of<PairKind::edge_edge, L>(request, scratch);
 }
 
 }  // namespace fastccd::FASTCCD_KERNEL_NAMESPACE
