@@ -37,6 +37,16 @@ TEST(OutputFile, NamesThatNothingCanHaveAreRefusedAtOnce)
     EXPECT_TRUE(directory.names().empty());
 }
 
+std::string refusal_to_commit(tools::OutputFile& file)
+{
+    try {
+        file.commit();
+    } catch (const tools::InputError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
 /// The name may be taken while there is work, by a folder here. What is complete is not thrown away for that.
 TEST(OutputFile, WhatIsCompleteStaysIfItCannotHaveItsName)
 {
@@ -47,17 +57,25 @@ TEST(OutputFile, WhatIsCompleteStaysIfItCannotHaveItsName)
         tools::OutputFile file{target};
         file.write("all of it\n");
         std::filesystem::create_directory(target);
-        try {
-            file.commit();
-        } catch (const tools::InputError& error) {
-            message = error.what();
-        }
+        message = refusal_to_commit(file);
     }
     std::filesystem::remove(target);
     ASSERT_EQ(directory.names().size(), 1U);
     const std::string kept = directory / directory.names().front();
     EXPECT_EQ(message, target + ": cannot be created: Is a directory; all that was to be in it is in " + kept);
     EXPECT_EQ(read_text(kept), "all of it\n");
+}
+
+TEST(OutputFile, SaysThatWhatWasCompleteIsGoneWithItsFolder)
+{
+    const ScratchDirectory directory;
+    const std::string folder = directory / "folder";
+    std::filesystem::create_directory(folder);
+    tools::OutputFile file{folder + "/hits.csv"};
+    std::filesystem::remove_all(folder);
+    const std::string message = refusal_to_commit(file);
+    EXPECT_EQ(message.rfind(folder + "/hits.csv: cannot be created: No such file or directory; all that was to be in it is lost, as somebody removed " +
+                            folder + "/hits.csv.", 0), 0U) << message;
 }
 
 /// As a container has a single file that is mounted into it.

@@ -12,7 +12,7 @@ endforeach()
 if(NOT FASTCCD_SANITIZE)
   fastccd_add_tools_test(random_counts_test)  # ten million pairs, and no call that others do not make
 endif()
-set(command_tests command_test command_errors_test scene_command_test scene_command_errors_test separation_command_test output_file_test report_page_test)
+set(command_tests command_test command_errors_test held_command_test scene_command_test scene_command_errors_test separation_command_test output_file_test report_page_test)
 if(NOT FASTCCD_SANITIZE)
   list(APPEND command_tests report_test)  # minutes of exact arithmetic; report_page_test runs the report itself
 endif()

@@ -34,8 +34,8 @@ void random_command(const RandomOptions& options)
         .pairs = options.pairs,
         .seed = options.seed};
     if (!options.save.empty()) refuse_overwriting_output(options.common, options.save);
+    std::optional<NpyWriter> saved;
     const Totals totals = run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
-        std::optional<NpyWriter> saved;
         if (!options.save.empty()) {
             // Blocks can be used in place later, but have no way to say that the last is not full.
             const bool whole_blocks = options.pairs % block_pairs == 0;
@@ -50,8 +50,9 @@ void random_command(const RandomOptions& options)
             run.answer(view, first);
             if (saved) saved->append(view);
         }
-        if (saved) saved->commit();
+        if (saved) saved->close();
     });
+    if (saved) saved->commit();  // right after the hits: to be stopped leaves both of them or neither
     print_report(options.common, question, totals);
 }
 

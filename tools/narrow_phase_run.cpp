@@ -16,6 +16,7 @@
 #include "hits_file.hpp"
 #include "instruction_sets.hpp"
 #include "interrupt.hpp"
+#include "mapped_file.hpp"
 #include "pair_slice.hpp"
 #include "progress.hpp"
 #include "threads.hpp"
@@ -74,6 +75,7 @@ void NarrowPhaseRun::answer_piece(const PairView& pairs, std::size_t first_pair,
     } else {
         find(pairs, part);
     }
+    check_mapped_files();
     totals_.summary.add(part, first_pair);
     for (const std::size_t i : invalid_) {
         if (totals_.first_invalid.size() == most_invalid_named) break;

@@ -225,7 +225,7 @@ NpyHeader parse_npy_header(std::string_view bytes, const std::filesystem::path& 
 
 NpyPairs::NpyPairs(const std::filesystem::path& path) : file_{path}
 {
-    const NpyHeader header = parse_npy_header(file_.bytes(), path);
+    const NpyHeader header = file_.parsed([&](std::string_view bytes) { return parse_npy_header(bytes, path); });
     data_offset_ = header.data_offset;
     const auto view = [&](const auto* data) {
         return header.layout == PairView::Layout::blocked ? PairView::blocked(data, header.pairs)

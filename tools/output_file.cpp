@@ -93,6 +93,7 @@ void write_all(int descriptor, std::string_view bytes, const std::filesystem::pa
         const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
         if (written >= 0) {
             bytes.remove_prefix(static_cast<std::size_t>(written));
+            if (!bytes.empty()) check_interrupt();  // a signal ends a write that waits with what it has written so far
         } else if (errno == EINTR) {
             check_interrupt();
         } else if (errno == EAGAIN) {
@@ -205,9 +206,11 @@ void OutputFile::commit()
     if (temporary_.empty()) return;
     const std::filesystem::path complete = std::exchange(temporary_, {});
     if (::rename(complete.c_str(), target_.c_str()) == 0) return;
-    const int error = errno;
-    throw InputError(target_, fmt::format("cannot be created: {}; all that was to be in it is in {}",
-                                          std::generic_category().message(error), complete.string()));
+    const std::string why = std::generic_category().message(errno);
+    std::error_code unknown;
+    const bool is_there = std::filesystem::exists(complete, unknown);
+    throw InputError(target_, fmt::format("cannot be created: {}; all that was to be in it {} {}", why,
+                                          is_there ? "is in" : "is lost, as somebody removed", complete.string()));
 }
 
 }  // namespace fastccd::tools

@@ -34,7 +34,7 @@ public:
     using Visitor = std::function<void(const PairView&, std::size_t, std::span<const std::int8_t>)>;
 
     /// Calls `visit` for all pairs of `range`, in order, at most `chunk` (a multiple of 8) at a time.
-    /// Throws InputError when a file can no longer be read.
+    /// Throws InputError when a file can no longer be read; `visit` is to call check_mapped_files() once it has read the pairs.
     void for_each_chunk(const PairRange& range, std::size_t chunk, const Visitor& visit) const;
 
 private:

@@ -171,7 +171,7 @@ RationalCsv read_rational_csv(const std::filesystem::path& path, Rounding roundi
 {
     const MappedFile file{path};
     file.load(0, file.bytes().size());
-    return parse_rational_csv(file.bytes(), path, rounding);
+    return file.parsed([&](std::string_view text) { return parse_rational_csv(text, path, rounding); });
 }
 
 }  // namespace fastccd::tools

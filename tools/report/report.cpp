@@ -84,7 +84,7 @@ Json measure(const ReportOptions& options)
 Json read_json(const fs::path& path)
 {
     const MappedFile file{path};
-    Json json = Json::parse(file.bytes(), nullptr, false);
+    Json json = file.parsed([](std::string_view text) { return Json::parse(text, nullptr, false); });
     if (!json.is_object() || !json.contains("format") || json["format"] != 1) {
         throw InputError(path, "is no report.json of this version");
     }
