@@ -226,6 +226,13 @@ TEST(MeshIo, ObjAfterAByteOrderMark)
     EXPECT_EQ(mesh.faces, (std::vector<std::int32_t>{0, 1, 2}));
 }
 
+TEST(MeshIo, PlyAfterAByteOrderMarkAndBlanksAfterItsName)
+{
+    for (const std::string begin : {"\xEF\xBB\xBFply\n", "ply \n", "ply\t \r\n", "\xEF\xBB\xBFply \r\n"})
+        EXPECT_EQ(parse_mesh(begin + triangle.substr(4), "mesh").faces, triangle_faces) << begin;
+    EXPECT_THROW((void)parse_mesh("ply x\n" + triangle.substr(4), "mesh"), InputError);
+}
+
 TEST(MeshIo, ContentDecidesForPly)
 {
     EXPECT_EQ(parse_mesh(triangle, "mesh.obj").faces, triangle_faces);

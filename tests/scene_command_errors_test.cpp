@@ -201,6 +201,32 @@ TEST(MakeSceneCommand, SaysWhatItWroteAndKeepsOtherMeshes)
     EXPECT_TRUE(is_one_line(in_a_file)) << in_a_file.error;
 }
 
+/// Pairs for `fastccd run` may be named by mistake, and a device never ends.
+TEST(SceneCommandErrors, WhatIsNoMeshIsNotReadWhole)
+{
+    const ScratchDirectory directory;
+    const std::string frame = directory.write("a.obj", two_faces("1", "5")), large = directory.write("large.npy", "no mesh");
+    fs::resize_file(large, 1'000'000'000);
+    const long usual = run(scene({frame, frame})).peak_kilobytes;
+    for (const std::string& path : {large, std::string{"/dev/zero"}}) {
+        const Outcome outcome = run(scene({path, frame}));
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_EQ(outcome.error.rfind("fastccd: " + path + ": not a mesh that is read here", 0), 0U) << outcome.error;
+        EXPECT_LT(outcome.peak_kilobytes, usual + 100'000);
+    }
+}
+
+TEST(SceneCommandErrors, AMeshThatDoesNotFitIntoMemoryIsNamed)
+{
+    if (sanitized) GTEST_SKIP() << "NOT TESTED: a sanitizer needs more memory than the limit; a mesh too large was not refused under one here";
+    const ScratchDirectory directory;
+    const std::string large = directory.write("large.obj", "# a comment of zeros");
+    fs::resize_file(large, 2'000'000'000);
+    const Outcome outcome = run_limited(RLIMIT_AS, 1'000'000'000, scene({large, large}, {"--threads", "2"}));
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_EQ(outcome.error, "fastccd: " + large + ": there is not enough memory for this mesh\n");
+}
+
 /// How the command ends when `signal` comes once there are so many `files` in `folder`.
 int status_after_signal(const Arguments& arguments, int signal, const std::string& folder, std::size_t files)
 {

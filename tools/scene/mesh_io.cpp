@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <string>
 #include <system_error>
@@ -19,8 +20,49 @@
 namespace fastccd::tools {
 namespace {
 
-// Into memory rather than mapped: a mesh may come through a pipe, and a file cut short while it is
-// mapped ends the process.
+/// Of a mark and a line with a few blanks.
+constexpr std::size_t longest_beginning = 64;
+
+/// Editors put this in front of UTF-8; left there it would hide what the file is, and OBJ's first vertex, as unknown statements are skipped.
+std::string_view without_mark(std::string_view content)
+{
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
+    return content;
+}
+
+bool begins_as_ply(std::string_view content)
+{
+    content = content.substr(0, longest_beginning);
+    const std::size_t end = content.find_first_not_of(" \t\r", 3);
+    return content.starts_with("ply") && end != std::string_view::npos && content[end] == '\n';
+}
+
+std::string extension_in_small_letters(const std::filesystem::path& path)
+{
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return extension;
+}
+
+enum class Format { ply, obj };
+
+/// By the first bytes and the name. Throws InputError.
+Format format_of(std::string_view content, const std::filesystem::path& path)
+{
+    if (begins_as_ply(without_mark(content))) return Format::ply;
+    if (extension_in_small_letters(path) == ".obj") return Format::obj;
+    throw InputError(
+        path,
+        content.empty()
+            ? "the file is empty; a PLY or OBJ mesh is needed"
+            : "not a mesh that is read here: PLY begins with the line 'ply', OBJ is read from files whose "
+              "names end in '.obj', not through pipes");
+}
+
+// Into memory rather than mapped: a mesh may come through a pipe.
 std::string read_bytes(const std::filesystem::path& path)
 {
     struct Close {
@@ -38,10 +80,15 @@ std::string read_bytes(const std::filesystem::path& path)
     constexpr std::size_t first_size = std::size_t{1} << 20;
     std::string bytes;
     std::size_t size = 0;
+    bool is_known = false;
     do {
         if (size == bytes.size()) bytes.resize(std::max(2 * size, first_size));
         const std::size_t got = std::fread(bytes.data() + size, 1, bytes.size() - size, file.get());
         size += got;
+        if (!is_known && size >= 2 * longest_beginning) {
+            (void)format_of({bytes.data(), size}, path);  // what is no mesh may be of any length, or endless
+            is_known = true;
+        }
         if (std::ferror(file.get()) == 0) continue;
         if (errno != EINTR) throw InputError(path, fmt::format("cannot be read: {}", reason(errno)));
         check_interrupt();
@@ -49,20 +96,6 @@ std::string read_bytes(const std::filesystem::path& path)
     } while (std::feof(file.get()) == 0);
     bytes.resize(size);
     return bytes;
-}
-
-bool begins_as_ply(std::string_view content)
-{
-    return content.starts_with("ply\n") || content.starts_with("ply\r\n");
-}
-
-std::string extension_in_small_letters(const std::filesystem::path& path)
-{
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return extension;
 }
 
 void append_little_endian(std::string& bytes, std::uint64_t bits, int size)
@@ -91,23 +124,22 @@ void radix_sort(std::vector<std::uint64_t>& keys, int bits)
 
 Mesh parse_mesh(std::string_view content, const std::filesystem::path& path)
 {
+    const Format format = format_of(content, path);
+    content = without_mark(content);
     try {
-        if (begins_as_ply(content)) return detail::parse_ply(content);
-        if (extension_in_small_letters(path) == ".obj") return detail::parse_obj(content);
+        return format == Format::ply ? detail::parse_ply(content) : detail::parse_obj(content);
     } catch (const detail::MeshError& error) {
         throw InputError(path, error.what());
     }
-    throw InputError(
-        path,
-        content.empty()
-            ? "the file is empty; a PLY or OBJ mesh is needed"
-            : "not a mesh that is read here: PLY begins with the line 'ply', OBJ is read from files whose "
-              "names end in '.obj', not through pipes");
 }
 
 Mesh read_mesh(const std::filesystem::path& path)
 {
-    return parse_mesh(read_bytes(path), path);
+    try {
+        return parse_mesh(read_bytes(path), path);
+    } catch (const std::bad_alloc&) {
+        throw InputError(path, "there is not enough memory for this mesh");
+    }
 }
 
 void write_ply(const OutputFile& file, const Mesh& mesh)

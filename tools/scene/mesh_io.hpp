@@ -31,7 +31,7 @@ struct Mesh {
 
 /// Reads a PLY (ascii, binary_little_endian, binary_big_endian) or OBJ file.
 ///
-/// A file that begins with the line "ply" is PLY, any other named *.obj is OBJ. Positions keep full
+/// A file that begins with the line "ply" (a mark of UTF-8 before it, as before OBJ, is left out) is PLY, any other named *.obj is OBJ. Positions keep full
 /// precision: ascii numbers are correctly rounded to the property's type (OBJ: double), floats and
 /// integers widened exactly. Extra PLY properties and elements (edges without two vertices, too) and all OBJ statements but `v`, `f` and
 /// `l` are skipped. NaN and infinity are read as they are.

@@ -174,9 +174,6 @@ private:
 
 Mesh parse_obj(std::string_view content)
 {
-    // Editors put this in front of UTF-8; left there it would hide the first vertex, for unknown statements are skipped.
-    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-    if (content.starts_with(byte_order_mark)) content.remove_prefix(byte_order_mark.size());
     return ObjParser(content).parse();
 }
 

@@ -40,8 +40,7 @@ public:
 
     PlyHeader parse()
     {
-        if (!lines_.next() || lines_.line() != "ply")
-            throw MeshError("line 1: a PLY file begins with the line 'ply'");
+        lines_.next();  // the line 'ply', by which parse_mesh tells the format
         while (lines_.next()) {
             std::string_view line = lines_.line();
             const std::string_view keyword = take_word(line);
