@@ -121,8 +121,7 @@ void run_tile(const Job& job, std::size_t first, std::size_t count, double cutof
     const auto search = [&](std::size_t i) {
         const double toi = search_pair(job, first, i, cutoff, scratch);
         earliest = std::min(earliest, toi);
-        invalid += std::isnan(toi) ? 1 : 0;
-        ++totals.scalar_pairs;
+        ++(std::isnan(toi) ? invalid : totals.scalar_pairs);
     };
     if (job.kernels != nullptr) {
         job.kernels->run_tile({job.kind, &job.source, first, count, &parameters, cutoff, preferences()}, scratch);

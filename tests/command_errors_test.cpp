@@ -148,7 +148,11 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{}, "A subcommand is required"},
         {{"fly", "--kind", "vf"}, "there is no subcommand 'fly'; see"},
         {{"isa", "--kind", "vf"}, "not expected: --kind vf; see"},
+        {{"--kind", "vf"}, "not expected before a subcommand: --kind; see"},
+        {{"--kind", "vf", "random"}, "not expected before a subcommand: --kind; see"},
         {{"random"}, "--kind is required"},
+        {{"random", "--kin", "vf"}, "not expected: --kin vf; see `fastccd random --help`"},
+        {{"run", "-x.npy", "--kind", "vf"}, "not expected: -x.npy; see"},
         {{"random", "--kind", "ve"}, "--kind: 've' is neither vf"},
         {{"random", "--kind", "vf", "--pairs", "-1"}, "--pairs"},
         {{"random", "--kind", "vf", "--pairs"}, "--pairs: the value is missing; see"},
@@ -166,7 +170,7 @@ TEST(CommandErrors, UsageErrorsAreOneLineAndStatusTwo)
         {{"random", "--kind", "vf", "--isa", "mmx"}, "--isa: there is no instruction set 'mmx'; available here: scalar"},
         {{"random", "--kind", "vf", "--nothing"}, "--nothing"},
         {{"random", "--kind", "vf", "--min-separation", "1e-400"}, "--min-separation: '1e-400' is too small"},
-        {{"run", "--kind", "vf", "--hits=", none}, "--hits=: the value is empty"},
+        {{"run", "--kind", "vf", "--hits=", none}, "--hits: the value is empty"},
         {{"run", directory / "none.csv", "--kind", "vf", "--hits=" + (directory / "a="), "--range", "x"}, "--range: 'x' is not A:B"},
         {{"random", "--kind", "vf", "--save", "-"}, "--save: the report goes to standard output"},
         {{"random", "--kind", "vf", "--save", directory / "pairs.CSV"}, "--save: what is written is .npy"},
@@ -429,8 +433,8 @@ TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
     refused({"--hits", directory / "./file", "--save", file}, "written already");
     refused({"--hits", file, "--save", std::filesystem::relative(file)}, "written already");
     refused({"--hits", ""}, "--hits: the value is empty");
-    refused({"--hits=", file}, "--hits=: the value is empty");
-    refused({"--save=", file}, "--save=: the value is empty");
+    refused({"--hits=", file}, "--hits: the value is empty");
+    refused({"--save=", file}, "--save: the value is empty");
     refused({"--save", ""}, "--save: the value is empty");
     refused({"--hits", "--json"}, "--hits: '--json' begins like an option; a file or folder of that name is ./--json");
     refused({"--save", "--parity"}, "--save: '--parity' begins like an option");

@@ -158,6 +158,9 @@ TEST(Command, InvalidPairsAreNamedAndTheOthersAnswered)
     EXPECT_EQ(Json::parse(json.out)["contacts"], 26);
     EXPECT_EQ(Json::parse(json.out)["invalid_pairs"].size(), 10U);
     EXPECT_EQ(json.error, "fastccd: warning: " + named + "\n");
+    EXPECT_EQ(Json::parse(run({"run", file, "--kind", "vf", "--reference", "--json"}).out)["scalar_pairs"], 26) << "invalid ones are not searched";
+    const Outcome beside_rows = run({"run", file, "--kind", "vf", "--json", "--hits", "-"});
+    EXPECT_EQ(Json::parse(beside_rows.error)["invalid"], 14) << "one object, and nothing else";
 }
 
 TEST(Command, ProofTellsWhatIsCertainAndExactSettlesTheRest)

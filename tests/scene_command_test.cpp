@@ -233,6 +233,7 @@ TEST(SceneCommand, VerticesThatAreNotFiniteAreNamedAndTheOthersAnswered)
     // A file that is standard error too keeps the rows and what follows them.
     const std::string rows = run(scene(frames, {"--quiet", "--hits", "-"})).out;
     EXPECT_EQ(run(scene(frames, {"--quiet", "--hits", "/dev/stderr"})).error, rows + outcome.error);
+    EXPECT_EQ(Json::parse(run(scene(frames, {"--json", "--hits", "-"})).error)["invalid"], 2) << "one object, and nothing else";
     std::vector<std::string> many(9, frames[1]);
     EXPECT_NE(run(scene(many)).error.find(" 2 vertices"), std::string::npos);
     EXPECT_NE(run(scene(many)).error.find("; step 4: 6, 8 and more, which --json lists\n"), std::string::npos) << run(scene(many)).error;

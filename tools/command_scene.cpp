@@ -55,7 +55,7 @@ void add_scene_command(CLI::App& app)
     add_search_options(*command, options->common);
     add_separation_options(*command, options->common);
     add_report_options(*command, options->common,
-                       "step,kind,v0,v1,v2,v3,toi; vf: the vertex,\nthen the face's; ee: the first edge's, then the second's");
+                       "step,kind,v0,v1,v2,v3,toi; vf: the vertex,\nthen the face's; ee: the first edge's, then the second's", "it names all invalid vertices");
     command->callback([options] {
         if (options->frames.size() < 2) {
             throw CLI::ValidationError("FRAME", "a step is from one frame to another; name two or more");

@@ -134,7 +134,7 @@ void add_separation_options(CLI::App& command, CommonOptions& options)
         ->capture_default_str();
 }
 
-void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns)
+void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns, const std::string& json_names)
 {
     command
         .add_option("--hits", options.hits,
@@ -145,7 +145,7 @@ void add_report_options(CLI::App& command, CommonOptions& options, const std::st
         ->type_name("OUT.csv");
     command.add_flag("--proof", options.proof, "A last column proven in --hits: 1, or 0 for a contact that is\npossible to within rounding")
         ->needs("--hits");
-    command.add_flag("--json", options.json, "Report as one JSON object (of invalid pairs it names the first ten)");
+    command.add_flag("--json", options.json, fmt::format("Report as one JSON object ({})", json_names));
     command.add_flag("--quiet", options.quiet, "No progress bar, and no report unless --json");
 }
 
@@ -159,7 +159,7 @@ void add_pair_options(CLI::App& command, PairOptions& options)
         ->type_name("vf|ee");
     add_search_options(command, options);
     add_separation_options(command, options);
-    add_report_options(command, options, "pair,toi, invalid pairs with nan");
+    add_report_options(command, options, "pair,toi, invalid pairs with nan", "of invalid pairs it names the first ten");
     command.add_flag("--parity", options.parity, "Also count contacts at an odd and at an even number of roots")
         ->excludes("--proof")
         ->excludes("--min-separation");

@@ -44,8 +44,8 @@ void add_search_options(CLI::App& command, CommonOptions& options);
 /// A distance to keep instead of contact. After add_search_options.
 void add_separation_options(CLI::App& command, CommonOptions& options);
 
-/// What to tell: hits, whose description ends in `hits_columns`, json, quiet.
-void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns);
+/// What to tell: hits, whose description ends in `hits_columns`, json, of which it ends in `json_names`, quiet.
+void add_report_options(CLI::App& command, CommonOptions& options, const std::string& hits_columns, const std::string& json_names);
 
 /// All options of PairOptions.
 void add_pair_options(CLI::App& command, PairOptions& options);

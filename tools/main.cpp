@@ -46,7 +46,7 @@ void refuse_empty_values(const std::vector<std::string_view>& arguments)
     for (const std::string_view argument : arguments) {
         if (argument == "--") return;
         if (argument.starts_with("--") && argument.find('=') + 1 == argument.size())
-            throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument));
+            throw CLI::ArgumentMismatch(fmt::format("{}: the value is empty", argument.substr(0, argument.size() - 1)));
     }
 }
 
@@ -60,10 +60,10 @@ int fail(std::string_view message)
 /// What is wrong with the words of a command line that nothing takes, in their order; CLI11 lists them backwards.
 std::string unexpected(const CLI::App& app)
 {
-    const std::vector<std::string> words = app.remaining(true);
-    const auto subcommand = std::find_if(words.begin(), words.end(), [](const std::string& word) { return !word.starts_with('-'); });
-    if (app.get_subcommands().empty() && subcommand != words.end()) return fmt::format("there is no subcommand '{}'", *subcommand);
-    return fmt::format("not expected: {}", fmt::join(words, " "));
+    const std::vector<std::string> before = app.remaining();
+    if (!before.empty() && before.front().starts_with('-')) return fmt::format("not expected before a subcommand: {}", before.front());
+    if (!before.empty() && app.get_subcommands().empty()) return fmt::format("there is no subcommand '{}'", before.front());
+    return fmt::format("not expected: {}", fmt::join(app.remaining(true), " "));
 }
 
 /// CLI11's words for an option without its value are "--pairs: 1 required N missing".
@@ -78,7 +78,10 @@ std::string usage_error(const CLI::App* app, const CLI::Error& error)
 {
     std::string command = "fastccd";
     for (const CLI::App* const given : app->get_subcommands()) command += " " + given->get_name();
-    const std::string what = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ? unexpected(*app) : without_value(error.what());
+    // What is missing may be there, but misspelt.
+    const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                       (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && app->remaining_size(true) > 0);
+    const std::string what = extra ? unexpected(*app) : without_value(error.what());
     return fmt::format("fastccd: {}; see `{} --help`\n", fastccd::tools::on_one_line(what), command);
 }
 

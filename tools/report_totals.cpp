@@ -169,7 +169,8 @@ void print_report(const PairOptions& options, const Question& question, const To
     const bool text = !options.json && !options.quiet;
     if (options.json) write_all(descriptor, json_report(options, question, totals), stream);
     if (text) write_all(descriptor, text_report(options, question, totals), stream);
-    if (!text && totals.summary.invalid > 0) {
+    // Not where JSON is, which says so, too, and is to be one object.
+    if (!text && totals.summary.invalid > 0 && !(options.json && to_error)) {
         write_all(STDERR_FILENO, fmt::format("fastccd: warning: {}\n", on_one_line(invalid_pairs(question, totals))), "standard error");
     }
 }

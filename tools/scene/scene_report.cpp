@@ -188,7 +188,8 @@ void print_scene_report(const SceneOptions& options, const SceneTotals& totals)
     } else if (!options.common.quiet) {
         write_all(descriptor, scene_text_report(options, totals), stream);
     }
-    if (!totals.invalid.empty()) {
+    // Not where JSON is, which names them, too, and is to be one object.
+    if (!totals.invalid.empty() && !(options.common.json && to_error)) {
         write_all(STDERR_FILENO,
                   fmt::format("fastccd: warning: {}: {}\n", left_out(totals), invalid_vertices(totals)), "standard error");
     }

@@ -85,7 +85,7 @@ struct Summary {
     std::size_t odd = 0;           ///< Contacts at an odd number of roots, when roots were asked for.
     std::size_t even = 0;          ///< Contacts at an even number of roots, when roots were asked for.
     std::size_t invalid = 0;       ///< Pairs with a NaN or an infinity.
-    std::size_t scalar_pairs = 0;  ///< Pairs that the lanes leave to the search for one pair at a time. No part of the answer:
+    std::size_t scalar_pairs = 0;  ///< Valid pairs that the lanes leave to the search for one pair at a time. No part of the answer:
                                    ///< may depend on instruction set, processor and threads.
     Contact earliest{no_pair, no_contact};  ///< Smallest toi, ties to the smaller index.
     Isa isa = Isa::automatic;      ///< Kernels that ran.
