@@ -27,13 +27,13 @@ namespace fastccd::scalar {
 namespace {
 
 template <PairKind kind>
-SearchResult search(const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
+SearchResult search(const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes, unsigned most)
 {
     const PairPolynomials<kind> pair{coordinates, parameters};
     SearchResult result{.toi = std::numeric_limits<double>::infinity(), .intervals = 1};
     if (pair.apart()) return result;
 
-    LeafSearch<kind> leaves{pair, parameters, lanes};
+    LeafSearch<kind> leaves{pair, parameters, lanes, most};
     double first = leaves.first_contact();
     if (first <= 1.0) {
         result.proof = leaves.proof_of_contact(first);
@@ -47,7 +47,7 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
     if (first > 1.0) return {.toi = result.toi, .intervals = result.intervals};
     result.toi = parameters.time(first);
     if (parameters.count_roots) {
-        RootCounter<kind> counter{pair, parameters};
+        RootCounter<kind> counter{pair, parameters, most};
         result.roots = counter.count();
         result.root_intervals = counter.intervals();
     }
@@ -56,11 +56,12 @@ SearchResult search(const double* coordinates, const SearchParameters& parameter
 
 }  // namespace
 
-SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes)
+SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters, const IntervalKernel* lanes,
+                              unsigned most)
 {
     if (!all_finite(coordinates)) return {.toi = std::numeric_limits<double>::quiet_NaN()};
-    return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, lanes)
-                                         : search<PairKind::edge_edge>(coordinates, parameters, lanes);
+    return kind == PairKind::vertex_face ? search<PairKind::vertex_face>(coordinates, parameters, lanes, most)
+                                         : search<PairKind::edge_edge>(coordinates, parameters, lanes, most);
 }
 
 }  // namespace fastccd::scalar

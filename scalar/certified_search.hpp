@@ -33,8 +33,9 @@ struct SearchResult {
     unsigned root_intervals = 0;  ///< and to count roots.
 };
 
-/// `coordinates`: 24, in the order of PairView. `lanes`: with a kernel for several intervals the same result, sooner.
+/// `coordinates`: 24, in the order of PairView. `lanes`: with a kernel for several intervals the same result, sooner. `most`: the cap on intervals;
+/// hardly any pair comes to the ordinary one, so tests set others.
 SearchResult certified_search(PairKind kind, const double* coordinates, const SearchParameters& parameters,
-                              const IntervalKernel* lanes = nullptr);
+                              const IntervalKernel* lanes = nullptr, unsigned most = most_intervals);
 
 }  // namespace fastccd::scalar

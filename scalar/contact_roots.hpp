@@ -17,8 +17,9 @@ namespace fastccd::scalar {
 template <PairKind kind>
 class RootCounter {
 public:
-    RootCounter(const PairPolynomials<kind>& pair, const SearchParameters& parameters)
-        : pair_{pair}, leaf_width_{std::min(parameters.leaf_width, widest_leaf)}, leaves_{pair, parameters}
+    /// `most`: the cap on intervals.
+    RootCounter(const PairPolynomials<kind>& pair, const SearchParameters& parameters, unsigned most = most_intervals)
+        : pair_{pair}, leaf_width_{std::min(parameters.leaf_width, widest_leaf)}, most_{most}, leaves_{pair, parameters, nullptr, most}
     {
     }
 
@@ -30,7 +31,7 @@ public:
         while (!stack.empty()) {
             // One cap for these intervals and for the parts of leaves together.
             leaves_.count_interval();
-            if (leaves_.intervals() > most_intervals) return 0;
+            if (leaves_.intervals() > most_) return 0;
             const Interval i = stack.pop();
             const Cubic<double> f = pair_.coplanarity(i);
             const double width = i.b - i.a;
@@ -145,6 +146,7 @@ private:
 
     const PairPolynomials<kind>& pair_;
     double leaf_width_;
+    unsigned most_;
     LeafSearch<kind> leaves_;
     bool open_ = false;
     bool countable_ = true;

@@ -17,9 +17,10 @@ class LeafSearch {
 public:
     static constexpr double none = std::numeric_limits<double>::infinity();
 
-    /// `kernel`: if there is one, several intervals are looked at in one go, with the same outcome.
-    LeafSearch(const PairPolynomials<kind>& pair, const SearchParameters& parameters, const IntervalKernel* kernel = nullptr)
-        : pair_{pair}, parameters_{parameters}, kernel_{kernel}, search_{pair.coefficients(), parameters, kernel}
+    /// `kernel`: if there is one, several intervals are looked at in one go, with the same outcome. `most`: the cap on intervals.
+    LeafSearch(const PairPolynomials<kind>& pair, const SearchParameters& parameters, const IntervalKernel* kernel = nullptr,
+               unsigned most = most_intervals)
+        : pair_{pair}, parameters_{parameters}, kernel_{kernel}, most_{most}, search_{pair.coefficients(), parameters, kernel}
     {
     }
 
@@ -74,7 +75,7 @@ public:
         stack.push(is_first ? leaf : Interval{0.0, 1.0});
         // Both exact: by a power of two, and of what is at most twice the origin, if that is not 0.
         if (leaf.a < skipped_to_) stack.skip_to((skipped_to_ - whole.origin) / whole.duration, finest_at(skipped_to_) / whole.duration);
-        const unsigned limit = std::min(search_.intervals + most_parts, most_intervals);
+        const unsigned limit = std::min(search_.intervals + most_parts, most_);
         const auto part = parts.next_without_certificate(stack, true, limit, is_finest);
         search_.intervals = parts.intervals;
         out_of_parts_ = search_.intervals > limit;
@@ -101,7 +102,7 @@ public:
     /// before the time to which directions have led. Not where it touches: that has been looked at (counts_as_contact_at, meets_after_directions).
     [[nodiscard]] bool in_doubt(double s) const
     {
-        return touch_ == none && ((0.0 < skipped_to_ && s == skipped_to_) || out_of_parts_ || search_.intervals >= most_intervals_in_leaf || !pair_.has_area(s));
+        return touch_ == none && ((0.0 < skipped_to_ && s == skipped_to_) || out_of_parts_ || search_.intervals >= std::min(most_intervals_in_leaf, most_) || !pair_.has_area(s));
     }
 
     [[nodiscard]] unsigned intervals() const { return search_.intervals; }
@@ -133,7 +134,7 @@ private:
         may_ask_directions_ = false;
         double time = along.apart.value ? none : along.time;
         bool ended = true;
-        if (along.goes_on.value && search_.intervals < most_intervals) {
+        if (along.goes_on.value && search_.intervals < most_) {
             const SearchResult apart = apart_until(pair_.coefficients(), parameters_, time, most_looks_to_skip);
             search_.intervals += apart.intervals;
             time = apart.toi;
@@ -161,7 +162,7 @@ private:
     /// See first_contact(): in what waits.
     double next_contact()
     {
-        unsigned limit = most_intervals;
+        unsigned limit = most_;
         const auto is_narrowest = [&](Interval i) { return is_leaf(i); };
         while (const auto found = search_.next_without_certificate(stack_, laborious_ >= laborious_leaves, limit, is_narrowest)) {
             // Out of intervals, what is still waiting is looked at but not halved. Far from what took so many, a few more are enough.
@@ -195,7 +196,7 @@ private:
     /// After a laborious leaf.
     void skip_along_directions(Interval leaf)
     {
-        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_intervals) return;
+        if (++laborious_ % laborious_leaves != 0 || !directions_help_ || search_.intervals >= most_) return;
         const double start = std::max(leaf.b, skipped_to_);
         const SearchResult apart = apart_until(pair_.coefficients(), parameters_, start, most_looks_to_skip);
         search_.intervals += apart.intervals;
@@ -209,6 +210,7 @@ private:
     const PairPolynomials<kind>& pair_;
     const SearchParameters& parameters_;
     const IntervalKernel* kernel_;
+    unsigned most_;
     OrderedSearch<kind> search_;
     IntervalStack stack_;  ///< What is still to be looked at.
     unsigned extensions_ = 0;

@@ -82,7 +82,7 @@ TEST_P(Adapter, AgreesWithExactTruthToWithinItsDistance)
                         EXPECT_EQ(toi, infinity);
                         continue;
                     }
-                    EXPECT_LE(toi, truth.contact ? truth.t_hi : t_max) << family << ' ' << lossless(pair);
+                    EXPECT_LE(toi, truth.contact ? truth.t_lo : t_max) << family << ' ' << lossless(pair);
                     EXPECT_GE(toi, 0.0);
                     ++hits;
                     const mpq_class size = oracle::sum_of_extents(pair);

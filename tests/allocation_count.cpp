@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <new>
 
+#include <tbb/cache_aligned_allocator.h>
+
 // Sanitizers bring their own malloc; there only operator new is counted.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define FASTCCD_COUNT_MALLOC 0
@@ -23,21 +25,36 @@
 #endif
 
 namespace {
-std::atomic<std::size_t> count{0}, refused{SIZE_MAX};
+std::atomic<std::size_t> count{0}, refused{0}, allowed_again{0};
 
 /// Counts, and tells whether the allocation may be made.
 bool allowed(std::size_t size)
 {
     count.fetch_add(1, std::memory_order_relaxed);
-    return size < refused.load(std::memory_order_relaxed);
+    return size < refused.load(std::memory_order_relaxed) || allowed_again.load(std::memory_order_relaxed) <= size;
 }
 }  // namespace
 
 namespace fastccd::testing {
 std::size_t allocations() { return count.load(); }
-void refuse_allocations_from(std::size_t bytes) { refused = bytes; }
+void refuse_allocations(std::size_t least, std::size_t end)
+{
+    refused = least;
+    allowed_again = end;
+}
 bool refuses_every_allocation() { return FASTCCD_COUNT_MALLOC != 0; }
 }  // namespace fastccd::testing
+
+// oneTBB's library may take its memory from an allocator of its own, past malloc. This definition is the one that programs and the library
+// find first.
+namespace tbb::detail::r1 {
+void* cache_aligned_allocate(std::size_t size)
+{
+    constexpr std::size_t line = 128;  // two, as oneTBB has it
+    return operator new(size, std::align_val_t{line});
+}
+void cache_aligned_deallocate(void* p) { operator delete(p, std::align_val_t{128}); }
+}  // namespace tbb::detail::r1
 
 #if FASTCCD_COUNT_MALLOC
 

@@ -225,6 +225,7 @@ TEST(Api, InvalidPairsAreNamedAndTheOthersAnswered)
                 ASSERT_TRUE(find_contacts(pair_kind(kind), interleaved(pairs), options, contacts, &invalid).ok());
                 EXPECT_EQ(invalid, poisoned) << name(isa) << ' ' << poison;
                 EXPECT_EQ(found.summary.invalid, poisoned.size());
+                EXPECT_EQ(found.summary.scalar_pairs, expected.summary.scalar_pairs) << "that is of valid pairs";
                 std::size_t next = 0;
                 for (std::size_t i = 0; i < pairs.size(); ++i) {
                     if (next < poisoned.size() && poisoned[next] == i) {
@@ -280,7 +281,7 @@ TEST(Api, NeverZeroWhenApartAtTheStart)
             options.isa = isa;
             const double toi = answer(oracle::Kind::vertex_face, interleaved({pair}), options).toi[0];
             EXPECT_GT(toi, 0.0) << gap;
-            EXPECT_LE(toi, oracle::exact_ccd(oracle::Kind::vertex_face, pair).t_hi) << gap;
+            EXPECT_LE(toi, oracle::exact_ccd(oracle::Kind::vertex_face, pair).t_lo) << gap;
         }
     }
     const oracle::Pair touching{{{0, 0, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 1}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}};
@@ -414,6 +415,33 @@ TEST(Api, TotalsOfPiecesAddUpInAnyOrder)
     Summary none;
     none.add(Summary{}, 7);
     EXPECT_EQ(totals_of(none), totals_of(Summary{}));
+}
+
+/// Of a contact at time 0 there is nothing more to say without a separation, and the earliest one is all that a search for it knows.
+TEST(Api, SaysNothingThatWasNotAsked)
+{
+    auto pairs = uniform_pairs(1000);
+    for (std::size_t c = 0; c < 3; ++c) pairs[7][1][c] = pairs[7][0][c];  // a corner at the vertex
+    std::vector<Contact> contacts;
+    Summary summary;
+    ASSERT_TRUE(find_contacts(PairKind::vertex_face, interleaved(pairs), {}, contacts, nullptr, &summary).ok());
+    const auto first = std::ranges::find(contacts, 7u, &Contact::pair);
+    ASSERT_NE(first, contacts.end());
+    EXPECT_EQ(first->toi, 0.0);
+    EXPECT_FALSE(first->at_start);
+    EXPECT_EQ(summary.at_start, 0u);
+    EXPECT_EQ(summary.odd + summary.even, 0u);
+
+    Contact earliest{};
+    for (const double separation : {0.0, 0.01}) {
+        Options options;
+        options.minimum_separation = separation;
+        ASSERT_TRUE(earliest_contact(PairKind::vertex_face, interleaved(pairs), options, earliest, &summary).ok());
+        EXPECT_EQ(earliest.pair, 7u);
+        EXPECT_EQ(earliest.at_start, separation > 0.0);
+        EXPECT_EQ(summary.earliest.pair, 7u);
+        EXPECT_EQ(summary.contacts + summary.proven + summary.at_start, 0u);
+    }
 }
 
 TEST(Api, SummaryAgreesWithTheDenseAnswer)

@@ -12,6 +12,10 @@
 #include <lane.hpp>
 #include <mesh_boxes.hpp>
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 
@@ -331,6 +335,32 @@ TEST(Boxes, CoordinatesThatAreNotFiniteAreNamedAsWithoutBoxes)
                 EXPECT_GT(answer(kind, interleaved(soup.packed()), options).summary.invalid, 0u);
                 expect_same_bits(soup, {});
             }
+}
+
+/// The vertices of a large mesh are looked at in parts, by several threads.
+TEST(Boxes, EveryPartOfALargeMeshCounts)
+{
+    const tbb::global_control limit{tbb::global_control::max_allowed_parallelism, 4};
+    Soup soup{oracle::Kind::vertex_face, spread, 16, 20'000};
+    // The outermost, and the one that is not finite, are of the last parts.
+    for (int axis = 0; axis < 3; ++axis) {
+        soup.end[soup.end.size() - 3 - 6000 - static_cast<std::size_t>(axis)] = -10.0;
+        soup.end[soup.end.size() - 3 - static_cast<std::size_t>(axis)] = 10.0;
+    }
+    Soup other = soup;
+    other.start.back() = std::numeric_limits<double>::quiet_NaN();
+    const MovingMesh mesh = soup.mesh(), not_finite = other.mesh();
+    const IndexedSource source = soup.source(mesh), source_not_finite = other.source(not_finite);
+    const auto screen = [&](const IndexedSource& asked, int threads) {
+        MeshBoxes boxes;
+        return tbb::task_arena{threads}.execute([&] { return boxes.screen(PairKind::vertex_face, asked, 1'000'000, 0.125); });
+    };
+    const BoxScreen expected = screen(source, 1);
+    for (std::size_t i = 0; i < amount(400); ++i) {
+        const BoxScreen found = screen(source, 4);
+        for (int axis = 0; axis < 3; ++axis) ASSERT_EQ(found.separation[axis], expected.separation[axis]);
+        ASSERT_EQ(screen(source_not_finite, 4).first, nullptr);
+    }
 }
 
 TEST(Boxes, MadeWhenACallBringsManyPairsAndKept)

@@ -1,8 +1,10 @@
-// fastccd_digest [PAIRS]: a line per family of hard pairs with a checksum of everything that is answered, from every instruction
-// set of this machine. Two machines promise the same output: tools/test.sh --all compares this one, an emulated x86-64 without
+// fastccd_digest [PAIRS]: a line per family of hard pairs, and one of all in every layout, with a checksum of everything that is answered, from every
+// instruction set of this machine. Two machines promise the same output: tools/test.sh --all compares this one, an emulated x86-64 without
 // AVX, and an emulated arm64.
 // fastccd_digest --compare FILE: only the lines that differ from those of FILE, which another machine or an earlier commit has
 // written, as tests/digests.txt. Exit 1 if there are any, or if instruction sets differ on one machine already.
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cinttypes>
 #include <cstdint>
@@ -13,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "all_layouts.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 
@@ -70,12 +73,43 @@ bool add_digest(const std::string& family, oracle::Kind kind, std::size_t pairs_
     return agree;
 }
 
+/// The same of pairs of all families at once, as floats and as doubles, in every layout. Their coordinates are numbers of either kind.
+bool add_digest_of_layouts(oracle::Kind kind, std::size_t pairs_per_family, std::vector<std::string>& lines)
+{
+    std::vector<oracle::Pair> pairs = mixed_pairs(kind, 4712, pairs_per_family);
+    for (oracle::Pair& pair : pairs)
+        for (std::array<double, 3>& point : pair)
+            for (double& x : point) x = static_cast<float>(std::clamp(x, -0x1.fffffep127, 0x1.fffffep127));
+    const AllLayouts<float> floats{pairs};
+    const AllLayouts<double> doubles{pairs};
+    Options options;
+    options.reference = true;
+    const Answer expected = answer(kind, interleaved(pairs), options);
+    options.reference = false;
+    const std::uint64_t sum = checksum(expected);
+    char line[200];
+    std::snprintf(line, sizeof line, "layouts %s %zu %016" PRIx64, kind_name(kind), expected.summary.contacts, sum);
+    lines.emplace_back(line);
+    bool agree = true;
+    for (const auto& views : {floats.views, doubles.views})
+        for (const auto& [layout, view] : views)
+            for (const Isa isa : isas_to_test()) {
+                options.isa = isa;
+                if (checksum(answer(kind, view, options)) == sum) continue;
+                std::fprintf(stderr, "%s differs from the certified search: %s %s\n", name(isa), layout.c_str(), kind_name(kind));
+                agree = false;
+            }
+    return agree;
+}
+
 std::vector<std::string> all_digests(std::size_t pairs_per_family, bool& agree)
 {
     std::vector<std::string> lines;
     for (const std::string& family : families())
         for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
             agree &= add_digest(family, kind, pairs_per_family, lines);
+    for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge})
+        agree &= add_digest_of_layouts(kind, (pairs_per_family + 7) / 8, lines);
     return lines;
 }
 

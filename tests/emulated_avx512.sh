@@ -66,11 +66,11 @@ cpu: model=corei7_skylake_x, ips=100000000
 memory: guest=512, host=512
 romimage: file=/usr/share/bochs/BIOS-bochs-latest
 vgaromimage: file=/usr/share/bochs/VGABIOS-lgpl-latest
-ata0-master: type=cdrom, path=$work/disc.iso, status=inserted
+ata0-master: type=cdrom, path="$work/disc.iso", status=inserted
 boot: cdrom
-com1: enabled=1, mode=file, dev=$serial
+com1: enabled=1, mode=file, dev="$serial"
 sound: waveoutdrv=dummy, waveindrv=dummy, midioutdrv=dummy
-log: $work/bochs.log
+log: "$work/bochs.log"
 EOF
 # Debian's Bochs waits in its debugger until it is told to continue, and wants a terminal.
 echo continue >"$work/debugger"

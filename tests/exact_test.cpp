@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "all_layouts.hpp"
 #include "amount.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
@@ -27,8 +28,8 @@ Found find(oracle::Kind kind, const std::vector<oracle::Pair>& pairs, const Opti
     return found;
 }
 
-/// So degenerate in the first half of the step that the search uses up its intervals; regular contact at 0.81.
-TEST(Exact, LocatesContactAfterTheCap)
+/// So degenerate in the first half of the step that the search came to its cap there, before it went on along directions; regular contact at 0.81.
+TEST(Exact, LocatesContactAfterAlmostMeeting)
 {
     const std::vector<oracle::Pair> pairs{{{{0, 0, 0}, {0x1.e8p-26, 0x1.9p-26, 0}, {-0x1.4p-30, 0, 0}, {0, 16, -0.75},
                                             {4, -0.25, -3}, {-3.9921875, 0.75, -1}, {-2.03125, 0, -1.7626953125}, {0, 0, 0}}}};
@@ -40,7 +41,7 @@ TEST(Exact, LocatesContactAfterTheCap)
         const Found found = find(oracle::Kind::edge_edge, pairs, options);
         ASSERT_EQ(found.contacts.size(), 1u);
         EXPECT_GE(found.contacts[0].toi, verdict.t_lo - options.tolerance);
-        EXPECT_LE(found.contacts[0].toi, verdict.t_hi);
+        EXPECT_LE(found.contacts[0].toi, verdict.t_lo);
     }
 }
 
@@ -68,7 +69,7 @@ TEST(Exact, VerdictIsTheOracles)
                         if (!reported) continue;
                         EXPECT_TRUE(contact->proven);
                         EXPECT_GE(contact->toi, verdict.t_lo - std::max(tolerance, 0x1p-49)) << "early: " << family << ' ' << lossless(pairs[i]);
-                        EXPECT_LE(contact->toi, verdict.t_hi) << "late: " << family << ' ' << lossless(pairs[i]);
+                        EXPECT_LE(contact->toi, verdict.t_lo) << "late: " << family << ' ' << lossless(pairs[i]);
                         EXPECT_EQ(contact->toi > 0.0, !verdict.at_start) << family << ' ' << lossless(pairs[i]);
                         at_start += verdict.at_start;
                         ++contact;
@@ -98,7 +99,7 @@ TEST(Exact, ProvenIsNeverWrong)
                     const auto what = [&] { return kind_name(kind) + (' ' + family) + ' ' + lossless(pairs[contact.pair]); };
                     ASSERT_TRUE(verdict.contact) << what();
                     // README, Accuracy: in [toi, toi + E_tol], or within 2^-6 of the step.
-                    EXPECT_LE(contact.toi, verdict.t_hi) << what();
+                    EXPECT_LE(contact.toi, verdict.t_lo) << what();
                     EXPECT_LE(verdict.t_lo, contact.toi + std::max(tolerance, 0x1p-6)) << what();
                     if (verdict.t_lo > contact.toi + tolerance) ++(tolerance > 1e-12 ? beyond : beyond_at_least);
                 }
@@ -121,6 +122,35 @@ TEST(Exact, RandomContactsAreProven)
             options.tolerance = tolerance;
             const Found found = find(kind, pairs, options);
             EXPECT_EQ(found.summary.proven, found.contacts.size()) << tolerance;
+        }
+    }
+}
+
+/// However lanes, or no lanes, come to ask for it.
+TEST(Exact, TheSameOnEveryIsaInEveryLayoutAndByReference)
+{
+    for (const auto kind : kinds) {
+        std::vector<oracle::Pair> pairs = mixed_pairs(kind, 56, amount(16));
+        for (oracle::Pair& pair : pairs)
+            for (auto& point : pair)
+                for (double& x : point) x = static_cast<float>(std::clamp(x, -0x1.fffffep127, 0x1.fffffep127));  // as a float, too
+        Options options;
+        options.exact = options.reference = true;
+        const Answer expected = answer(kind, interleaved(pairs), options);
+        EXPECT_EQ(expected.summary.proven, expected.summary.contacts);
+        EXPECT_EQ(expected.summary.scalar_pairs, pairs.size());
+        options.reference = false;
+        const AllLayouts<float> floats{pairs};
+        const AllLayouts<double> doubles{pairs};
+        for (const Isa isa : isas_to_test()) {
+            options.isa = isa;
+            for (const auto& views : {floats.views, doubles.views})
+                for (const auto& [layout, view] : views) {
+                    const Answer found = answer(kind, view, options);
+                    EXPECT_EQ(first_difference(expected, found), pairs.size()) << name(isa) << ", " << layout;
+                    EXPECT_EQ(found.summary.proven, expected.summary.proven) << name(isa) << ", " << layout;
+                    EXPECT_LT(found.summary.scalar_pairs, pairs.size());
+                }
         }
     }
 }
@@ -168,7 +198,7 @@ TEST(Exact, SmallIntegers)
                 const bool reported = contact != found.contacts.end() && contact->pair == i;
                 ASSERT_EQ(reported, verdict.contact) << kind_name(kind) << ' ' << lossless(pairs[i]);
                 if (!reported) continue;
-                EXPECT_LE(contact->toi, verdict.t_hi) << "late: " << lossless(pairs[i]);
+                EXPECT_LE(contact->toi, verdict.t_lo) << "late: " << lossless(pairs[i]);
                 EXPECT_GE(contact->toi, verdict.t_lo - 1e-9) << "early: " << lossless(pairs[i]);
                 ++contact;
             }

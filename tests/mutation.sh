@@ -359,6 +359,11 @@ mutant 'totals: first contact of the lanes not seen' simd/lane_results.hpp 's/sc
 mutant 'totals: first separation of the lanes not seen' simd/separation_pipeline.hpp 's/if \(times\[lane\] < scratch_\.earliest\) scratch_\.earliest = times\[lane\];//' api_test separation_bits_test
 mutant 'totals: first contact of the search not seen' $tile 's/earliest = std::min\(earliest, toi\);//' api_test same_bits_test
 mutant 'totals: invalid pairs are contacts' $tile 's/reported - invalid/reported/' api_test
+mutant 'totals: at the start without a separation' scheduler/tile_runner.hpp 's/job\.parameters\.separation\.distance > 0\.0 && //' api_test
+mutant 'totals: contacts of a search for the earliest' scheduler/fastccd.cpp 's/totals\.contacts = totals\.proven = totals\.at_start = 0;//' api_test
+mutant 'totals: invalid pairs are searched' $tile 's/\+\+\(std::isnan\(toi\) \? invalid : totals\.scalar_pairs\);/invalid += std::isnan(toi) ? 1 : 0; ++totals.scalar_pairs;/' api_test
+mutant 'single pairs: by the instruction set asked for' scheduler/single_pair.cpp 's/search_alone\.isa = Isa::scalar;//' single_pair_test
+mutant 'exact: by lanes where reference is asked for' $tile 's/if \(options\.reference\) kernels = nullptr;/if (options.reference \&\& !options.exact) kernels = nullptr;/' exact_test
 mutant 'totals: invalid pairs are proven' $tile 's/proven - invalid/proven/' api_test
 
 # ---- The exact verdict
@@ -372,13 +377,22 @@ mutant 'environment: threads as the arena left it' scheduler/parallel_ranges.hpp
 mutant 'environment: not given back' scheduler/default_floating_point.cpp 's/(~DefaultFloatingPoint\(\)\s*\{\s*)set\(before_\);/$1/' floating_point_environment_test
 mutant 'environment: the arena made in the library'\''s' scheduler/parallel_ranges.cpp 's/const CallersFloatingPoint callers;//' floating_point_environment_test
 
+mutant 'tasks: those of the program begun while indices are checked' scheduler/parallel_ranges.hpp 's/tbb::this_task_arena::isolate\(\[&\] \{ (return tbb::parallel_reduce\(.*?\);) \}\);/[\&] { $1 }();/' host_tasks_test
 mutant 'tasks: those of the program begun meanwhile' scheduler/parallel_ranges.hpp 's/tbb::this_task_arena::isolate\(\[&\] \{ (tbb::parallel_for\(.*?\);) \}\);/$1/' host_tasks_test
 
 mutant 'adapters: separation to the default tolerance' kernels/include/fastccd/adapters/distance_tolerance.hpp 's/options\.distance_tolerance = std::min\(.*?;/;/' adapters_test
+mutant 'lists: invalid pairs find no room' scheduler/fastccd.cpp 's/if \(invalid != nullptr\) reserve_more\(\*invalid, totals\.invalid\);//' out_of_memory_test
+mutant 'allocations: one for each pair that is searched' scheduler/tile_runner.cpp 's/(double search_pair\([^{]*\{)/$1 static thread_local std::vector<double, tbb::cache_aligned_allocator<double>> kept; kept = std::vector<double, tbb::cache_aligned_allocator<double>>(1024);/; s/#include <limits>/#include <limits>\n#include <vector>\n#include <tbb\/cache_aligned_allocator.h>/' bounded_test
 mutant 'lists grow by what is needed alone' scheduler/fastccd.cpp 's/std::max\(needed, 2 \* list\.capacity\(\)\)/needed/' api_test
 
-# Not `most_extensions = 0`: since the search goes on along directions from the cap, it changes a few times of pairs that are degenerate for
-# a moment, which are as early with it as without (5e-8 at most in 679 pairs at the cap); `digest` alone notices.
+# ---- The cap on intervals
+leaves=scalar/leaf_search.hpp
+mutant 'cap: none' $leaves 's/unsigned limit = most_;/unsigned limit = 1u << 30;/' cap_test
+mutant 'cap: nothing where it ends' $leaves 's/is_wide \? std::max\(found->a, skipped_to_\)/is_wide ? none/' cap_test
+mutant 'cap: no more for what is wide' scalar/certified_search.hpp 's/most_extensions = 16/most_extensions = 0/' cap_test
+mutant 'cap: more for what is wide, without end' $leaves 's/is_wide && extensions_ < most_extensions/is_wide/' cap_test
+mutant 'cap: not for the parts of a leaf' $leaves 's/std::min\(search_\.intervals \+ most_parts, most_\);/search_.intervals + most_parts;/' cap_test
+
 following=scalar/following_direction.hpp
 mutant 'separation: heights while following = 0' $separation 's/vertex_face \? rho \+ 8 : 2 \* rho \+ 18\) \+ slack/vertex_face ? 0 : 0)/' error_bounds_test
 mutant 'separation: nothing follows' scalar/separation_search.cpp 's/outcome\.left\.value && follow/false \&\& follow/' separation_test separation_bits_test
@@ -419,6 +433,12 @@ mutant 'boxes: separation rounded down' $boxes 's/std::ceil\(/std::floor(/' boxe
 mutant 'boxes: short axes count' kernels/grid_box.hpp 's/shortest_axis = 0x1p-20/shortest_axis = 0/' boxes_test
 mutant 'boxes: large separations wrap' $boxes 's/cells < beyond_grid \? static_cast<std::int16_t>\(cells\) : beyond_grid/static_cast<std::int16_t>(static_cast<std::int64_t>(std::min(cells, 1e15)))/' boxes_test
 mutant 'boxes: of coordinates that are not finite' $boxes 's/if \(bounds\.not_finite != 0\.0\) return set\.release\(\);//' boxes_test
+mutant 'boxes: not finite in one part alone' $boxes 's/not_finite \+= other\.not_finite;//' boxes_test
+mutant 'boxes: lowest of one part alone' $boxes 's/low\[k\] = std::min\(low\[k\], other\.low\[k\]\);//' boxes_test
+mutant 'boxes: highest of one part alone' $boxes 's/high\[k\] = std::max\(high\[k\], other\.high\[k\]\);//' boxes_test
+mutant 'boxes: no memory for them is an error' $boxes 's/try \{\s*(set = make\(kind, source\);)\s*\} catch \(\.\.\.\) \{.*?\}/$1/s' out_of_memory_test
+mutant 'boxes: made without memory' $boxes 's/if \(set->memory == nullptr \|\| \(!faces && vertices_of_edges == nullptr\)\) return nullptr;//' out_of_memory_test
+mutant 'boxes: a mesh without a place for them' scheduler/moving_mesh.cpp 's/records_ == nullptr \|\| boxes_ == nullptr \?/records_ == nullptr ?/' out_of_memory_test
 mutant 'boxes: third corner left out' $boxes 's/faces \? join\(two, corner\(2\)\) : two/two/' boxes_test
 mutant 'boxes: apart at one end' kernels/lane.hpp 's/(first\.start\[k\] < second\.start\[k\]\)) &/$1 |/' boxes_test
 mutant 'boxes: touching is apart' kernels/lane.hpp 's/first\.(start|end)\[k\] < second/first.$1\[k] <= second/g' boxes_test

@@ -106,7 +106,7 @@ TEST(NeverZero, ContactsSoonAfterTheStart)
                 if (relative_distance_at_start(kind, pairs[i]) <= bound) continue;
                 const oracle::Verdict verdict = oracle::exact_ccd(kind, pairs[i]);
                 EXPECT_GT(found.toi[i], 0.0) << lossless(pairs[i]);
-                EXPECT_LE(found.toi[i], verdict.t_hi) << lossless(pairs[i]);
+                EXPECT_LE(found.toi[i], verdict.t_lo) << lossless(pairs[i]);
                 near_zero += verdict.contact && verdict.t_lo < tolerance;
             }
         }

@@ -189,9 +189,9 @@ TEST(NothingInvented, EdgesThatShrinkToAPoint)
         }
 }
 
-/// Two short edges that pass each other at some 1e-10 of the extents: on its way past, the search uses up all its
-/// intervals. What it has not looked at by then, most of the step, is far from contact and must be cleared.
-TEST(NothingInvented, WhatIsLeftAtTheCapIsStillLookedAt)
+/// Two short edges that pass each other at some 1e-10 of the extents: on its way past, the search once used up all its
+/// intervals (cap_test.cpp). What comes after that, most of the step, is far from contact and must be cleared.
+TEST(NothingInvented, WhatComesAfterAlmostMeetingIsStillLookedAt)
 {
     const oracle::Pair pair{{{0x1.ed5df1d01be48p-13, -0x1.0a984abe7086ap-10, 0x1.6afb48c59f6b7p-11},
                              {-0x1.e5a1beb12b2a7p-12, -0x1.9cf816c8fb99bp-11, 0x1.2eb07787f5db7p-8},
@@ -217,8 +217,8 @@ TEST(NothingInvented, WhatIsLeftAtTheCapIsStillLookedAt)
     }
 }
 
-/// Hill climbing led to the cap on intervals here, at a distance of 2e-5 s.
-TEST(NothingInvented, FarAtTheCap)
+/// Hill climbing led to the cap on intervals here, at a distance of 2e-5 s, before the search went on along directions.
+TEST(NothingInvented, FarWhereTheCapWas)
 {
     const oracle::Pair pair{{{-0x1.320e448000001p+16, -0x1.bb4ff9cp+16, -0x1.46d5b806c5c0cp+16},
                              {0x1.7ap+1, 0x1.65998ba7c99edp-23, 0x0p+0},

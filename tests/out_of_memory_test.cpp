@@ -8,12 +8,17 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <new>
+#include <numeric>
 #include <type_traits>
 #include <utility>
+
+#include <kernel_table.hpp>
+#include <mesh_boxes.hpp>
 
 #include "allocation_count.hpp"
 #include "generators.hpp"
@@ -22,10 +27,10 @@
 namespace fastccd::testing {
 namespace {
 
-/// While it lives, allocations of at least so many bytes fail.
+/// While it lives, allocations of at least `least` and fewer than `end` bytes fail.
 struct Refusal {
-    explicit Refusal(std::size_t bytes) { refuse_allocations_from(bytes); }
-    ~Refusal() { refuse_allocations_from(SIZE_MAX); }
+    explicit Refusal(std::size_t least, std::size_t end = SIZE_MAX) { refuse_allocations(least, end); }
+    ~Refusal() { refuse_allocations(0, 0); }
     Refusal(const Refusal&) = delete;
     Refusal& operator=(const Refusal&) = delete;
 };
@@ -124,7 +129,7 @@ TEST(OutOfMemory, OfTheCallersListsLeavesThemAsTheyWere)
     contacts.reserve(most_pairs);
     Status status;
     {
-        const Refusal refusal{pairs.list.size() / 2 * sizeof(std::size_t)};
+        const Refusal refusal{pairs.list.size() / 2 * sizeof(std::size_t), sizeof(Contact) * tile_pairs};  // nothing that a worker has
         status = find_contacts(PairKind::vertex_face, pairs.view, {}, contacts, &invalid);
     }
     EXPECT_EQ(status.error, Error::out_of_memory);
@@ -151,6 +156,72 @@ TEST(OutOfMemory, OfAMeshAndABuffer)
     EXPECT_TRUE(thrown);
     EXPECT_THROW(PairBuffer{SIZE_MAX}, std::bad_alloc);
     EXPECT_THROW(PairBuffer{SIZE_MAX / 192}, std::bad_alloc);
+}
+
+/// They save time, and nothing else depends on them.
+TEST(OutOfMemory, OfBoxesIsNoError)
+{
+    constexpr std::int32_t primitives = 20'000, around = 16;
+    for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
+        Pairs pairs{primitives};
+        std::vector<double> start, end;
+        std::vector<std::int32_t> faces, edges;
+        std::vector<VertexFace> vertex_face;
+        std::vector<EdgeEdge> edge_edge;
+        for (std::int32_t i = 0; i < primitives; ++i) {
+            for (std::size_t p = 0; p < 8; ++p) {
+                const auto& point = pairs.list[static_cast<std::size_t>(i)][p];
+                (p < 4 ? start : end).insert((p < 4 ? start : end).end(), point.begin(), point.end());
+            }
+            faces.insert(faces.end(), {4 * i + 1, 4 * i + 2, 4 * i + 3});
+            edges.insert(edges.end(), {4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
+            for (std::int32_t k = 0; k < around; ++k) {
+                vertex_face.push_back({4 * ((i + 7 * k) % primitives), i});
+                edge_edge.push_back({2 * i, 2 * ((i + 7 * k) % primitives) + 1});
+            }
+        }
+        const bool faced = kind == oracle::Kind::vertex_face;
+        std::vector<double> toi(static_cast<std::size_t>(primitives) * around), expected = toi;
+        const auto ask = [&](std::vector<double>& times, std::size_t least, std::size_t refused_end) {
+            const MovingMesh mesh{PositionView::rows(start.data(), 4 * primitives), PositionView::rows(end.data(), 4 * primitives),
+                                  IndexView::rows(faces.data(), primitives, 3), IndexView::rows(edges.data(), 2 * primitives, 2)};
+            const Refusal refusal{least, refused_end};
+            return faced ? time_of_impact(mesh, vertex_face, {}, times) : time_of_impact(mesh, edge_edge, {}, times);
+        };
+        EXPECT_TRUE(ask(expected, 0, 0).ok());
+        // More than a worker's scratch: boxes of 80,000 vertices alone, and with those of the primitives.
+        for (const std::size_t least : {sizeof(TileScratch) + 100'000, std::size_t{4'000'000}}) {
+            toi.assign(toi.size(), 0.5);
+            EXPECT_TRUE(ask(toi, least, SIZE_MAX).ok()) << kind_name(kind) << ' ' << least;
+            EXPECT_EQ(toi, expected) << kind_name(kind) << ' ' << least;
+        }
+    }
+}
+
+TEST(OutOfMemory, ThrownWhereBoxesAreMadeIsNoError)
+{
+    std::vector<double> positions(3000);
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = std::sin(static_cast<double>(i));
+    std::vector<std::int32_t> faces(3000);
+    std::iota(faces.begin(), faces.end(), 0);
+    for (std::int32_t& vertex : faces) vertex %= 1000;
+    const PositionView view = PositionView::rows(positions.data(), 1000);
+    const MovingMesh mesh{view, view, IndexView::rows(faces.data(), 1000, 3), {}};
+    const IndexedSource source{mesh.records(), nullptr, faces.data(), 3, 1, 1000, 1000, {}};
+    MeshBoxes boxes;
+    {
+        const Refusal refusal{1, 1000};  // what is small, and thrown by operator new
+        EXPECT_EQ(boxes.screen(PairKind::vertex_face, source, 100'000, 0.0).first, nullptr);
+    }
+    EXPECT_NE(boxes.screen(PairKind::vertex_face, source, 100'000, 0.0).first, nullptr);
+}
+
+TEST(OutOfMemory, OfAMeshWithoutItsSetsOfBoxes)
+{
+    const std::vector<double> positions(300, 0.5);
+    const PositionView view = PositionView::rows(positions.data(), 100);
+    const Refusal refusal{1, 100};
+    EXPECT_EQ((MovingMesh{view, view, {}, {}}.status().error), Error::out_of_memory);
 }
 
 TEST(Cancellation, OfTheCallersTaskGroupLeavesNothingOut)

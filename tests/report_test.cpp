@@ -216,7 +216,7 @@ TEST(Report, SaysHowFiguresWereObtained)
         }
     };
     check(report().json);
-    EXPECT_EQ(report().page.find("NaN"), std::string::npos);
+    for (const char* value : {">nan", ">-nan", ">inf", ">-inf", "NaN"}) EXPECT_EQ(report().page.find(value), std::string::npos) << value;
 }
 
 TEST(Report, NeedsNothingElse)

@@ -13,6 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include "amount.hpp"
+#include "all_layouts.hpp"
 #include "generators.hpp"
 #include "narrow_phase.hpp"
 #include "test_data.hpp"
@@ -143,30 +144,6 @@ TEST(SameBits, Layouts)
     }
 }
 
-/// Pairs as floats, in every layout.
-struct FloatPairs {
-    std::vector<float> records, blocked, columns;
-    std::vector<std::pair<const char*, PairView>> views;
-
-    explicit FloatPairs(const std::vector<oracle::Pair>& pairs)
-        : records(pairs.size() * pair_coordinates), blocked((pairs.size() + block_pairs - 1) / block_pairs * block_coordinates),
-          columns(records.size())
-    {
-        std::array<const float*, pair_coordinates> column{};
-        for (std::size_t i = 0; i < pairs.size(); ++i)
-            for (std::size_t c = 0; c < pair_coordinates; ++c) {
-                const auto value = static_cast<float>(pairs[i][c / 3][c % 3]);
-                records[i * pair_coordinates + c] = value;
-                blocked[blocked_index(i, c)] = value;
-                columns[c * pairs.size() + i] = value;
-                column[c] = &columns[c * pairs.size()];
-            }
-        views = {{"float interleaved", PairView::interleaved(records.data(), pairs.size())},
-                 {"float blocked", PairView::blocked(blocked.data(), pairs.size())},
-                 {"float strided", PairView::strided(column, 1, pairs.size())}};
-    }
-};
-
 TEST(SameBits, FloatLayoutsWidenExactly)
 {
     for (const auto kind : kinds) {
@@ -190,7 +167,7 @@ TEST(SameBits, FloatLayoutsWidenExactly)
             pairs.push_back(pair);
         }
         pairs.resize(pairs.size() / 8 * 8 - 3);  // the last five all have a coordinate that is not finite
-        const FloatPairs floats{pairs};
+        const AllLayouts<float> floats{pairs};
         for (const double t_max : {1.0, 0.37})
             for (const double separation : {0.0, 1e-2}) {
                 Options options;
@@ -203,7 +180,7 @@ TEST(SameBits, FloatLayoutsWidenExactly)
                     options.isa = isa;
                     for (const auto& [layout, view] : floats.views)
                         expect_same(expected, answer(kind, view, options),
-                                    std::string(layout) + ", " + name(isa) + ", t_max " + std::to_string(t_max) + ", separation " + std::to_string(separation));
+                                    layout + ", " + name(isa) + ", t_max " + std::to_string(t_max) + ", separation " + std::to_string(separation));
                 }
             }
     }

@@ -300,7 +300,7 @@ TEST(Separation, KeepsEveryContactOfDistanceZero)
                     const oracle::Verdict truth = oracle::exact_ccd(kind, pairs[i]);
                     if (!truth.contact) continue;
                     ++contacts;
-                    EXPECT_LE(found.toi[i], truth.t_hi) << family << ' ' << d << ' ' << lossless(pairs[i]);
+                    EXPECT_LE(found.toi[i], truth.t_lo) << family << ' ' << d << ' ' << lossless(pairs[i]);
                 }
             }
         }
@@ -318,7 +318,7 @@ TEST(Separation, KeepsEveryContactOfPublicData)
             for (std::size_t i = 0; i < set.pairs.size(); ++i) {
                 if (set.truth[i] == 0) continue;
                 ++contacts;
-                EXPECT_LE(found.toi[i], set.t_hi[i]) << set.name << ' ' << d << ' ' << lossless(set.pairs[i]);
+                EXPECT_LE(found.toi[i], set.t_lo[i]) << set.name << ' ' << d << ' ' << lossless(set.pairs[i]);
             }
         }
     for (const QuerySet& set : load_queries(*data)) {

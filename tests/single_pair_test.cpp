@@ -53,6 +53,11 @@ TEST(SinglePair, FallsOntoTheFace)
     EXPECT_LE(found.toi, 0.5);
     EXPECT_GE(found.toi, 0.5 - 1e-9);
     EXPECT_TRUE(found.proven);
+    for (const Isa isa : {Isa::avx512, Isa::neon, Isa::scalar}) {
+        Options any;
+        any.isa = isa;
+        EXPECT_EQ(vertex_face_toi(x0, x1, any).toi, found.toi) << "whether this machine has it or not: " << name(isa);
+    }
     Options shorter;
     shorter.t_max = 0.25;
     EXPECT_EQ(vertex_face_toi(x0, x1, shorter).toi, std::numeric_limits<double>::infinity());

@@ -111,7 +111,7 @@ void compare_with_exact_times(oracle::Kind exact_kind, const std::vector<oracle:
         const oracle::Verdict exact = oracle::exact_ccd(exact_kind, pair);
         if (!exact.contact) continue;
         ++touches;
-        ASSERT_LE(found.toi, exact.t_hi) << what << ": " << lossless(pair);
+        ASSERT_LE(found.toi, exact.t_lo) << what << ": " << lossless(pair);
         // Earlier only where rounding hides all the while that it is not there yet, as where it grazes.
         for (int k = 1; k < 8 && exact.t_lo - found.toi > parameters.leaf_width; ++k) {
             const double s = found.toi + 0.125 * k * (exact.t_lo - found.toi);

@@ -118,7 +118,7 @@ std::string against_truth(const Question& question, const oracle::Pair& pair, do
     if (question.minimum_separation > 0.0) return against_exact_distances(question, pair, toi, undecided);
     const oracle::Verdict verdict = oracle::exact_ccd(question.kind, pair, question.t_max);
     if (verdict.contact && std::isinf(toi)) return "missed";
-    if (verdict.contact && toi > verdict.t_hi) return "late";
+    if (verdict.contact && toi > verdict.t_lo) return "late";
     // 2^12 u, and 2^28 u after many looks, but for the cap (nothing_invented_test.cpp).
     if (std::isfinite(toi))
         if (const double excess = excess_of_contact_at(question, pair, toi);
