@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts recorded results between the markers of the repository's README.md, and into results/sets.md, so that no figure in them is typed.
 
-report: results/report/report.json, what `tools/report.sh --record` measured
+report, proven: results/report/report.json, what `tools/report.sh --record` measured
 run:   results/run.txt, what tools/run.sh printed
 truth: results/truth.txt, what truth_test printed
 speed: results/*.json, records of tools/bench.sh

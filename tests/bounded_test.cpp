@@ -17,6 +17,7 @@
 #include "allocation_count.hpp"
 #include "amount.hpp"
 #include "generators.hpp"
+#include "mesh_of_pairs.hpp"
 #include "narrow_phase.hpp"
 #include "oracle/exact_distance.hpp"
 #include "test_data.hpp"
@@ -277,33 +278,20 @@ TEST(Bounded, NoAllocationPerPairInAnyCall)
         std::vector<oracle::Pair> pairs;
         generate("simcloth", kind, 103, size, pairs);
         const PairBuffer blocks = to_buffer(pairs);
-        std::vector<double> arrays(pair_coordinates * (size + 8)), start, end;
+        std::vector<double> arrays(pair_coordinates * (size + 8));
         std::array<const double*, pair_coordinates> columns{};
         for (std::size_t c = 0; c < pair_coordinates; ++c) columns[c] = &arrays[c * (size + 8)];
         std::vector<float> floats;
-        std::vector<std::int32_t> faces, edges;
-        std::vector<VertexFace> vertex_face;
-        std::vector<EdgeEdge> edge_edge;
         for (std::size_t i = 0; i < size; ++i) {
             for (std::size_t c = 0; c < pair_coordinates; ++c) arrays[c * (size + 8) + i] = pairs[i][c / 3][c % 3];
-            for (std::size_t p = 0; p < 8; ++p) {
-                (p < 4 ? start : end).insert((p < 4 ? start : end).end(), pairs[i][p].begin(), pairs[i][p].end());
-                for (const double x : pairs[i][p]) floats.push_back(static_cast<float>(x));
-            }
+            for (const auto& point : pairs[i])
+                for (const double x : point) floats.push_back(static_cast<float>(x));
         }
         // So many pairs for each vertex, face and edge that boxes of theirs are made.
-        constexpr std::int32_t in_mesh = 1024, around = static_cast<std::int32_t>(size) / in_mesh;
-        for (std::int32_t pair = 0; pair < in_mesh; ++pair) {
-            const std::int32_t first = 4 * pair;
-            faces.insert(faces.end(), {first + 1, first + 2, first + 3});
-            edges.insert(edges.end(), {first, first + 1, first + 2, first + 3});
-            for (std::int32_t k = 0; k < around; ++k) {
-                vertex_face.push_back({4 * ((pair + k) % in_mesh), pair});
-                edge_edge.push_back({2 * pair, 2 * ((pair + k) % in_mesh) + 1});
-            }
-        }
-        const MovingMesh mesh{PositionView::rows(start.data(), 4 * in_mesh), PositionView::rows(end.data(), 4 * in_mesh),
-                              IndexView::rows(faces.data(), in_mesh, 3), IndexView::rows(edges.data(), 2 * in_mesh, 2)};
+        constexpr std::size_t in_mesh = 1024;
+        MeshOfPairs made{{pairs.begin(), pairs.begin() + in_mesh}};
+        made.pair_with_others(size / in_mesh, 1);
+        const MovingMesh mesh = made.mesh();
         std::vector<double> toi(size);
         const auto times = [&](const PairView& view, const Options& options) {
             return [&toi, view, options, kind] { ASSERT_TRUE(time_of_impact(pair_kind(kind), view, options, toi).ok()); };
@@ -324,14 +312,14 @@ TEST(Bounded, NoAllocationPerPairInAnyCall)
              }},
             {"indexed",
              [&] {
-                 ASSERT_TRUE((kind == oracle::Kind::vertex_face ? time_of_impact(mesh, vertex_face, {}, toi)
-                                                                : time_of_impact(mesh, edge_edge, {}, toi))
+                 ASSERT_TRUE((kind == oracle::Kind::vertex_face ? time_of_impact(mesh, made.vertex_face, {}, toi)
+                                                                : time_of_impact(mesh, made.edge_edge, {}, toi))
                                  .ok());
              }},
             {"step",
              [&] {
                  CollisionFreeStep step;
-                 ASSERT_TRUE(collision_free_step(mesh, vertex_face, edge_edge, {}, step).ok());
+                 ASSERT_TRUE(collision_free_step(mesh, made.vertex_face, made.edge_edge, {}, step).ok());
              }},
         };
         for (const auto& [name, call] : calls) EXPECT_LE(allocations_of(call), 64u) << kind_name(kind) << ' ' << name;

@@ -20,6 +20,7 @@
 
 #include "amount.hpp"
 #include "generators.hpp"
+#include "mesh_of_pairs.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
@@ -121,10 +122,6 @@ struct Scene {
     oracle::Kind kind;
     std::vector<oracle::Pair> pairs;
     std::vector<float> rounded;
-    std::vector<double> start, end;  // n x 3
-    std::vector<std::int32_t> faces, edges;
-    std::vector<VertexFace> vertex_face;
-    std::vector<EdgeEdge> edge_edge;
 
     Scene(oracle::Kind kind_of_pairs, std::size_t per_family) : kind{kind_of_pairs}
     {
@@ -139,19 +136,9 @@ struct Scene {
                 for (double& x : point) x *= 0x1p-1060;
             pairs.push_back(pair);
         }
-        for (const oracle::Pair& pair : pairs) {
-            const auto first = static_cast<std::int32_t>(start.size() / 3), number = static_cast<std::int32_t>(faces.size() / 3);
-            for (std::size_t p = 0; p < 4; ++p) {
-                start.insert(start.end(), pair[p].begin(), pair[p].end());
-                end.insert(end.end(), pair[4 + p].begin(), pair[4 + p].end());
-            }
+        for (const oracle::Pair& pair : pairs)
             for (const auto& point : pair)
                 for (const double x : point) rounded.push_back(static_cast<float>(x));
-            vertex_face.push_back({first, number});
-            edge_edge.push_back({2 * number, 2 * number + 1});
-            faces.insert(faces.end(), {first + 1, first + 2, first + 3});
-            edges.insert(edges.end(), {first, first + 1, first + 2, first + 3});
-        }
     }
 };
 
@@ -197,11 +184,10 @@ Record all_answers(const Scene& scene)
                 add_packed(record, interleaved(few), scene.kind, options);
             }
 
-    const std::size_t vertices = scene.start.size() / 3, faces = scene.faces.size() / 3;
-    const MovingMesh mesh{PositionView::rows(scene.start.data(), vertices), PositionView::rows(scene.end.data(), vertices),
-                          IndexView::rows(scene.faces.data(), faces, 3), IndexView::rows(scene.edges.data(), 2 * faces, 2)};
-    const std::span<const VertexFace> vertex_face{scene.vertex_face};
-    const std::span<const EdgeEdge> edge_edge{scene.edge_edge};
+    const MeshOfPairs made{scene.pairs};
+    const MovingMesh mesh = made.mesh();
+    const std::span<const VertexFace> vertex_face{made.vertex_face};
+    const std::span<const EdgeEdge> edge_edge{made.edge_edge};
     add_indexed(record, mesh, vertex_face, {});
     add_indexed(record, mesh, edge_edge, {});
     CollisionFreeStep step;

@@ -102,25 +102,25 @@ grep -q "enable_language(CXX)" "$work/log" || fail "what the static library need
 # Alone: whoever has no development files of oneTBB and GMP can link the shared library.
 PKG_CONFIG_LIBDIR=$(dirname "$(find "$prefix" -name fastccd.pc)")
 export PKG_CONFIG_LIBDIR
-library=$(pkg-config --variable=libdir fastccd)
+eval "library=$(pkg-config --variable=libdir fastccd)"
 export LD_LIBRARY_PATH=$library
 program=$tests/consumer/find_package/two_meshes.cpp
-read -ra flags <<<"$(pkg-config --cflags --libs fastccd)"
-quietly "$cxx" -std=c++20 -Wall -Wextra -Wpedantic -Werror "$program" "${flags[@]}" -o "$work/by_pkg_config"
+eval "shared=($(pkg-config --cflags --libs fastccd))"  # blanks in paths come quoted
+quietly "$cxx" -std=c++20 -Wall -Wextra -Wpedantic -Werror "$program" "${shared[@]}" -o "$work/by_pkg_config"
 run "$work/by_pkg_config"
-quietly "$cc" -std=c99 -Wall -Wextra -pedantic -Werror "$tests/c_interface_test.c" "${flags[@]}" -lm -o "$work/in_c"
+quietly "$cc" -std=c99 -Wall -Wextra -pedantic -Werror "$tests/c_interface_test.c" "${shared[@]}" -lm -o "$work/in_c"
 quietly "$work/in_c"
-read -ra flags <<<"$(pkg-config --cflags fastccd) $(pkg-config --static --libs fastccd | sed 's/-lfastccd/-l:libfastccd.a/')"
+eval "static=($(pkg-config --cflags fastccd) $(pkg-config --static --libs fastccd | sed 's/-lfastccd/-l:libfastccd.a/'))"
 unset LD_LIBRARY_PATH
-quietly "$cxx" -std=c++20 "$program" "${flags[@]}" -o "$work/static_by_pkg_config"
+quietly "$cxx" -std=c++20 "$program" "${static[@]}" -o "$work/static_by_pkg_config"
 run "$work/static_by_pkg_config"
-quietly "$cc" -std=c99 "$tests/c_interface_test.c" "${flags[@]}" -o "$work/static_in_c"
+quietly "$cc" -std=c99 "$tests/c_interface_test.c" "${static[@]}" -o "$work/static_in_c"
 quietly "$work/static_in_c"
 [ "$(pkg-config --modversion fastccd)" = "$(sed -n 's/#define FASTCCD_VERSION "\(.*\)"/\1/p' "$prefix/include/fastccd/version.h")" ] ||
   fail "fastccd.pc and version.h name different versions"
 
 # Simulators may be built without exceptions and run-time types.
-quietly "$cxx" -std=c++20 -fno-exceptions -fno-rtti -Wall -Wextra -Werror "$program" $(pkg-config --cflags --libs fastccd) -o "$work/without_exceptions"
+quietly "$cxx" -std=c++20 -fno-exceptions -fno-rtti -Wall -Wextra -Werror "$program" "${shared[@]}" -o "$work/without_exceptions"
 LD_LIBRARY_PATH=$library run "$work/without_exceptions"
 
 # Each header stands alone, under a consumer's warnings; nothing leaks of how the library is built.

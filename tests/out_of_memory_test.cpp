@@ -22,6 +22,7 @@
 
 #include "allocation_count.hpp"
 #include "generators.hpp"
+#include "mesh_of_pairs.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
@@ -161,32 +162,17 @@ TEST(OutOfMemory, OfAMeshAndABuffer)
 /// They save time, and nothing else depends on them.
 TEST(OutOfMemory, OfBoxesIsNoError)
 {
-    constexpr std::int32_t primitives = 20'000, around = 16;
+    constexpr std::size_t primitives = 20'000;
+    constexpr std::int32_t around = 16;
     for (const oracle::Kind kind : {oracle::Kind::vertex_face, oracle::Kind::edge_edge}) {
-        Pairs pairs{primitives};
-        std::vector<double> start, end;
-        std::vector<std::int32_t> faces, edges;
-        std::vector<VertexFace> vertex_face;
-        std::vector<EdgeEdge> edge_edge;
-        for (std::int32_t i = 0; i < primitives; ++i) {
-            for (std::size_t p = 0; p < 8; ++p) {
-                const auto& point = pairs.list[static_cast<std::size_t>(i)][p];
-                (p < 4 ? start : end).insert((p < 4 ? start : end).end(), point.begin(), point.end());
-            }
-            faces.insert(faces.end(), {4 * i + 1, 4 * i + 2, 4 * i + 3});
-            edges.insert(edges.end(), {4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
-            for (std::int32_t k = 0; k < around; ++k) {
-                vertex_face.push_back({4 * ((i + 7 * k) % primitives), i});
-                edge_edge.push_back({2 * i, 2 * ((i + 7 * k) % primitives) + 1});
-            }
-        }
-        const bool faced = kind == oracle::Kind::vertex_face;
-        std::vector<double> toi(static_cast<std::size_t>(primitives) * around), expected = toi;
+        MeshOfPairs made{Pairs{primitives}.list};
+        made.pair_with_others(around, 7);
+        std::vector<double> toi(made.vertex_face.size()), expected = toi;
         const auto ask = [&](std::vector<double>& times, std::size_t least, std::size_t refused_end) {
-            const MovingMesh mesh{PositionView::rows(start.data(), 4 * primitives), PositionView::rows(end.data(), 4 * primitives),
-                                  IndexView::rows(faces.data(), primitives, 3), IndexView::rows(edges.data(), 2 * primitives, 2)};
+            const MovingMesh mesh = made.mesh();
             const Refusal refusal{least, refused_end};
-            return faced ? time_of_impact(mesh, vertex_face, {}, times) : time_of_impact(mesh, edge_edge, {}, times);
+            return kind == oracle::Kind::vertex_face ? time_of_impact(mesh, made.vertex_face, {}, times)
+                                                     : time_of_impact(mesh, made.edge_edge, {}, times);
         };
         EXPECT_TRUE(ask(expected, 0, 0).ok());
         // More than a worker's scratch: boxes of 80,000 vertices alone, and with those of the primitives.

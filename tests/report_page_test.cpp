@@ -52,9 +52,9 @@ Browser browse(const std::string& url, const std::string& option)
     const std::string command =
         "timeout 120 chromium --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
         "--hide-scrollbars --allow-file-access-from-files --window-size=800,900 "
-        "--enable-logging=stderr --virtual-time-budget=5000 --user-data-dir=" +
-        (scratch / "profile") + " " + option + " --dump-dom 'file://" + url + "' >" + (scratch / "dom") + " 2>" +
-        (scratch / "log");
+        "--enable-logging=stderr --virtual-time-budget=5000 --user-data-dir='" +
+        (scratch / "profile") + "' " + option + " --dump-dom 'file://" + url + "' >'" + (scratch / "dom") + "' 2>'" +
+        (scratch / "log") + "'";
     EXPECT_EQ(std::system(command.c_str()), 0);
     return {read_text(scratch / "dom"), read_text(scratch / "log")};
 }

@@ -11,6 +11,7 @@
 
 #include "followed_pairs.hpp"
 #include "generators.hpp"
+#include "mesh_of_pairs.hpp"
 #include "narrow_phase.hpp"
 #include "test_data.hpp"
 
@@ -232,23 +233,8 @@ TEST(SeparationBits, IndexedPairs)
 {
     for (const auto kind : kinds) {
         const auto pairs = mixed_with_invalid_pairs(kind, 127, 31);
-        std::vector<double> start, end;
-        std::vector<std::int32_t> faces, edges;
-        std::vector<VertexFace> vertex_face;
-        std::vector<EdgeEdge> edge_edge;
-        for (const oracle::Pair& pair : pairs) {
-            const auto base = static_cast<std::int32_t>(start.size() / 3), face = static_cast<std::int32_t>(faces.size() / 3);
-            for (std::size_t p = 0; p < 4; ++p) {
-                start.insert(start.end(), pair[p].begin(), pair[p].end());
-                end.insert(end.end(), pair[p + 4].begin(), pair[p + 4].end());
-            }
-            vertex_face.push_back({base, face});
-            edge_edge.push_back({2 * face, 2 * face + 1});
-            faces.insert(faces.end(), {base + 1, base + 2, base + 3});
-            edges.insert(edges.end(), {base, base + 1, base + 2, base + 3});
-        }
-        const MovingMesh mesh{PositionView::rows(start.data(), start.size() / 3), PositionView::rows(end.data(), end.size() / 3),
-                              IndexView::rows(faces.data(), faces.size() / 3, 3), IndexView::rows(edges.data(), edges.size() / 2, 2)};
+        const MeshOfPairs made{pairs};
+        const MovingMesh mesh = made.mesh();
         const Answer expected = reference(kind, interleaved(pairs), options_for(1e-3));
         for (const Isa isa : isas_to_test()) {
             Answer found;
@@ -256,8 +242,8 @@ TEST(SeparationBits, IndexedPairs)
             found.roots.resize(pairs.size());
             const Status status =
                 kind == oracle::Kind::vertex_face
-                    ? time_of_impact(mesh, std::span<const VertexFace>(vertex_face), options_for(1e-3, isa), found.toi, &found.summary)
-                    : time_of_impact(mesh, std::span<const EdgeEdge>(edge_edge), options_for(1e-3, isa), found.toi, &found.summary);
+                    ? time_of_impact(mesh, std::span<const VertexFace>(made.vertex_face), options_for(1e-3, isa), found.toi, &found.summary)
+                    : time_of_impact(mesh, std::span<const EdgeEdge>(made.edge_edge), options_for(1e-3, isa), found.toi, &found.summary);
             ASSERT_TRUE(status.ok());
             expect_same(expected, found, std::string("indexed ") + name(isa));
         }

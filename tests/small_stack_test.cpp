@@ -14,6 +14,7 @@
 #include <tbb/global_control.h>
 
 #include "generators.hpp"
+#include "mesh_of_pairs.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
@@ -46,28 +47,13 @@ void on_small_stack(Function function)
 /// The same pairs as those of a mesh, made and asked about.
 void ask_a_mesh(const std::vector<oracle::Pair>& pairs, const Options& options)
 {
-    std::vector<double> start, end, toi(pairs.size());
-    std::vector<std::int32_t> faces, edges;
-    std::vector<VertexFace> vertex_face;
-    std::vector<EdgeEdge> edge_edge;
-    for (const oracle::Pair& pair : pairs) {
-        const auto i = static_cast<std::int32_t>(vertex_face.size()), first = 4 * i;
-        for (std::size_t p = 0; p < 4; ++p) {
-            start.insert(start.end(), pair[p].begin(), pair[p].end());
-            end.insert(end.end(), pair[4 + p].begin(), pair[4 + p].end());
-        }
-        faces.insert(faces.end(), {first + 1, first + 2, first + 3});
-        edges.insert(edges.end(), {first, first + 1, first + 2, first + 3});
-        vertex_face.push_back({first, i});
-        edge_edge.push_back({2 * i, 2 * i + 1});
-    }
-    const std::size_t vertices = 4 * pairs.size();
-    const MovingMesh mesh{PositionView::rows(start.data(), vertices), PositionView::rows(end.data(), vertices),
-                          IndexView::rows(faces.data(), pairs.size(), 3), IndexView::rows(edges.data(), 2 * pairs.size(), 2)};
-    EXPECT_TRUE(time_of_impact(mesh, vertex_face, options, toi).ok());
-    EXPECT_TRUE(time_of_impact(mesh, edge_edge, options, toi).ok());
+    const MeshOfPairs made{pairs};
+    const MovingMesh mesh = made.mesh();
+    std::vector<double> toi(pairs.size());
+    EXPECT_TRUE(time_of_impact(mesh, made.vertex_face, options, toi).ok());
+    EXPECT_TRUE(time_of_impact(mesh, made.edge_edge, options, toi).ok());
     CollisionFreeStep step;
-    EXPECT_TRUE(collision_free_step(mesh, vertex_face, edge_edge, options, step).ok());
+    EXPECT_TRUE(collision_free_step(mesh, made.vertex_face, made.edge_edge, options, step).ok());
 }
 
 /// Every question about packed pairs, of hard ones, so that lanes, the certified search and exact arithmetic all have a turn.

@@ -1,10 +1,11 @@
 // Any bytes as pairs, both kinds: a byte chooses tolerance and t_max, then come 24 doubles a pair; a double after the last pair
 // is a minimum separation, a single byte asks for the exact verdict where that is quick. Every instruction set gives the bits of the certified
-// search, for packed pairs and for all pairs of a mesh made of their points; a time is in [0, t_max] or infinite, and NaN exactly
+// search, for packed pairs, as floats, too, and for all pairs of a mesh made of their points; the lists of contacts are those of the times; a time is in [0, t_max] or infinite, and NaN exactly
 // where a coordinate is not finite; the exact verdict takes contacts away and makes no time earlier.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -47,6 +48,51 @@ void check(PairKind kind, const std::vector<double>& coordinates, Options option
         options.isa = isa;
         const std::vector<double> found = times(kind, coordinates, options);
         testing::require(std::memcmp(found.data(), expected.data(), found.size() * sizeof(double)) == 0);
+    }
+}
+
+/// The other questions about packed pairs, answered by the times: all contacts, and the earliest one.
+void check_lists(PairKind kind, const std::vector<double>& coordinates, const Options& options)
+{
+    const std::vector<double> toi = times(kind, coordinates, options);
+    const PairView pairs = PairView::interleaved(coordinates.data(), toi.size());
+    std::vector<Contact> contacts;
+    std::vector<std::size_t> invalid;
+    Contact earliest{};
+    testing::require(find_contacts(kind, pairs, options, contacts, &invalid).ok());
+    testing::require(earliest_contact(kind, pairs, options, earliest).ok());
+    auto contact = contacts.begin();
+    auto bad = invalid.begin();
+    Contact first{no_pair, no_contact};
+    for (std::size_t i = 0; i < toi.size(); ++i) {
+        if (std::isnan(toi[i])) {
+            testing::require(bad != invalid.end() && *bad++ == i);
+        } else if (toi[i] <= 1.0) {
+            testing::require(contact != contacts.end() && contact->pair == i && contact->toi == toi[i]);
+            if (toi[i] < first.toi) first = *contact;
+            ++contact;
+        }
+    }
+    testing::require(contact == contacts.end() && bad == invalid.end());
+    testing::require(earliest.pair == first.pair && earliest.toi == first.toi);
+}
+
+/// Rounded to floats, read as they are and widened; in records of pairs and, as blocks, with others behind.
+void check_floats(PairKind kind, const std::vector<double>& coordinates, const Options& options)
+{
+    constexpr double largest = std::numeric_limits<float>::max();
+    const std::size_t size = coordinates.size() / pair_coordinates;
+    std::vector<float> records, blocks((size + block_pairs - 1) / block_pairs * block_coordinates);
+    for (const double x : coordinates) records.push_back(static_cast<float>(std::isfinite(x) ? std::clamp(x, -largest, largest) : x));
+    for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t c = 0; c < pair_coordinates; ++c) blocks[blocked_index(i, c)] = records[i * pair_coordinates + c];
+    Options reference = options;
+    reference.reference = true;
+    const std::vector<double> expected = times(kind, {records.begin(), records.end()}, reference);
+    std::vector<double> found(size);
+    for (const PairView& view : {PairView::interleaved(records.data(), size), PairView::blocked(blocks.data(), size)}) {
+        testing::require(time_of_impact(kind, view, options, found).ok());
+        testing::require(std::memcmp(found.data(), expected.data(), size * sizeof(double)) == 0);
     }
 }
 
@@ -134,6 +180,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(PairKind::edge_edge, coordinates, options);
     check_mesh<VertexFace>(coordinates, options);
     check_mesh<EdgeEdge>(coordinates, options);
+    for (const PairKind kind : {PairKind::vertex_face, PairKind::edge_edge}) {
+        check_lists(kind, coordinates, options);
+        check_floats(kind, coordinates, options);
+    }
     if (rest == 1 && within_few_binades(coordinates)) {
         check_exact(PairKind::vertex_face, coordinates, options);
         check_exact(PairKind::edge_edge, coordinates, options);

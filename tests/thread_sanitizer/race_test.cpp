@@ -14,6 +14,7 @@
 #include <fastccd/fastccd.h>
 
 #include "generators.hpp"
+#include "mesh_of_pairs.hpp"
 #include "narrow_phase.hpp"
 
 namespace fastccd::testing {
@@ -48,50 +49,29 @@ Contact earliest_of(const Answer& answers)
 }
 
 /// Pairs, packed and as a mesh in which each has vertices of its own, how to ask about them, and what one thread answers.
-class Input {
-public:
+struct Input {
     Input(oracle::Kind kind, const std::vector<oracle::Pair>& made, const Options& how)
-        : pairs{made}, packed{to_buffer(made)}, options{how}, expected{one_thread_answer(kind, made, how)}
+        : pairs{made}, packed{to_buffer(made)}, indexed{made}, mesh{indexed.mesh()}, options{how}, expected{one_thread_answer(kind, made, how)}
     {
-        for (const oracle::Pair& pair : made) add(pair);
-        const std::size_t n = start_.size();
-        mesh = MovingMesh{PositionView::rows(start_[0].data(), n), PositionView::rows(end_[0].data(), n),
-                          IndexView::rows(faces_[0].data(), faces_.size(), 3), IndexView::rows(edges_[0].data(), edges_.size(), 2)};
     }
 
     [[nodiscard]] fastccd_mesh mesh_in_c() const
     {
-        return {sizeof(fastccd_mesh), start_.size(), start_[0].data(), end_[0].data(), faces_.size(), faces_[0].data(), edges_.size(), edges_[0].data()};
+        return {sizeof(fastccd_mesh), indexed.start.size() / 3, indexed.start.data(), indexed.end.data(), indexed.faces.size() / 3, indexed.faces.data(),
+                indexed.edges.size() / 2, indexed.edges.data()};
     }
 
     std::vector<oracle::Pair> pairs;
     PairBuffer packed;
+    MeshOfPairs indexed;
     MovingMesh mesh;
-    std::vector<VertexFace> vertex_face;
-    std::vector<EdgeEdge> edge_edge;
     Options options;
     Answer expected;
-
-private:
-    void add(const oracle::Pair& pair)
-    {
-        const auto x0 = static_cast<std::int32_t>(start_.size()), edge = static_cast<std::int32_t>(edges_.size());
-        start_.insert(start_.end(), pair.begin(), pair.begin() + 4);
-        end_.insert(end_.end(), pair.begin() + 4, pair.end());
-        vertex_face.push_back({x0, static_cast<std::int32_t>(faces_.size())});
-        faces_.push_back({x0 + 1, x0 + 2, x0 + 3});
-        edge_edge.push_back({edge, edge + 1});
-        edges_.insert(edges_.end(), {{x0, x0 + 1}, {x0 + 2, x0 + 3}});
-    }
-
-    std::vector<std::array<double, 3>> start_, end_;
-    std::vector<std::array<std::int32_t, 3>> faces_;
-    std::vector<std::array<std::int32_t, 2>> edges_;
 };
 
 /// Seven tiles, with contacts in each, with invalid pairs, and with pairs for the certified search: `hard` of some families, in
 /// which contact at time 0 is frequent.
-std::vector<oracle::Pair> mixed_pairs(oracle::Kind kind, std::size_t hard)
+std::vector<oracle::Pair> tiles_of_pairs(oracle::Kind kind, std::size_t hard)
 {
     std::vector<oracle::Pair> pairs, family_pairs;
     generate("uniform", kind, 71, 6500, pairs);
@@ -125,8 +105,8 @@ const std::vector<Input>& inputs(oracle::Kind kind)
         Options exact;
         exact.exact = true;
         std::vector<Input> result;
-        result.emplace_back(of, mixed_pairs(of, 200), Options{});
-        result.emplace_back(of, mixed_pairs(of, 20), exact);
+        result.emplace_back(of, tiles_of_pairs(of, 200), Options{});
+        result.emplace_back(of, tiles_of_pairs(of, 20), exact);
         result.emplace_back(of, approaching_pairs(of), Options{});
         return result;
     };
@@ -192,7 +172,7 @@ std::array<Answers, 2> ask_in_c(oracle::Kind kind, const Input& input, const Opt
     const fastccd_options options = options_in_c(asked);
     const double* const interleaved = input.pairs[0][0].data();
     const fastccd_mesh mesh = input.mesh_in_c();
-    const std::int32_t* const candidates = kind == oracle::Kind::vertex_face ? &input.vertex_face[0].vertex : &input.edge_edge[0].edge_a;
+    const std::int32_t* const candidates = kind == oracle::Kind::vertex_face ? &input.indexed.vertex_face[0].vertex : &input.indexed.edge_edge[0].edge_a;
     std::array<Answers, 2> found;
     for (const bool packed : {true, false}) {
         Answers& answers = found[packed ? 0 : 1];
@@ -228,8 +208,8 @@ std::array<Answers, 2> ask_in_c(oracle::Kind kind, const Input& input, const Opt
 Answers ask_indexed(oracle::Kind kind, const Input& input, const Options& options)
 {
     const std::size_t size = input.packed.size();
-    return kind == oracle::Kind::vertex_face ? ask_all(size, options, input.mesh, std::span<const VertexFace>{input.vertex_face})
-                                             : ask_all(size, options, input.mesh, std::span<const EdgeEdge>{input.edge_edge});
+    return kind == oracle::Kind::vertex_face ? ask_all(size, options, input.mesh, std::span<const VertexFace>{input.indexed.vertex_face})
+                                             : ask_all(size, options, input.mesh, std::span<const EdgeEdge>{input.indexed.edge_edge});
 }
 
 void expect_right(const Input& input, const Answers& found)
@@ -269,7 +249,7 @@ void ask_at_once(const Ask& ask)
 /// Before all other tests, which begin with a call alone: what that one stored for later ones, they would read without a race.
 TEST(FirstCalls, AtOnce)
 {
-    const std::vector<oracle::Pair> pairs = mixed_pairs(oracle::Kind::vertex_face, 100);
+    const std::vector<oracle::Pair> pairs = tiles_of_pairs(oracle::Kind::vertex_face, 100);
     std::array<Answer, callers> found;
     ask_at_once([&](std::size_t caller) { found[caller] = answer(oracle::Kind::vertex_face, interleaved(pairs), {}); });
     const Answer expected = one_thread_answer(oracle::Kind::vertex_face, pairs, {});
@@ -390,7 +370,7 @@ TEST(CollisionFreeStep, InC)
         packed[caller].size = indexed[caller].size = sizeof(fastccd_step);
         require_in_c(fastccd_pairs_collision_free_step(faces.pairs[0][0].data(), faces.pairs.size(), edges.pairs[0][0].data(),
                                                        edges.pairs.size(), &options, &packed[caller], nullptr));
-        require_in_c(fastccd_mesh_collision_free_step(&mesh, &faces.vertex_face[0].vertex, faces.vertex_face.size(), nullptr, 0, &options,
+        require_in_c(fastccd_mesh_collision_free_step(&mesh, &faces.indexed.vertex_face[0].vertex, faces.indexed.vertex_face.size(), nullptr, 0, &options,
                                                       &indexed[caller], nullptr));
     });
     for (std::size_t caller = 0; caller < callers; ++caller) {
@@ -405,7 +385,7 @@ TEST(IndexCheck, MoreIndicesThanOneTaskChecks)
 {
     const Input& input = inputs(oracle::Kind::vertex_face)[0];
     std::vector<VertexFace> pairs;
-    while (pairs.size() < 200000) pairs.insert(pairs.end(), input.vertex_face.begin(), input.vertex_face.end());
+    while (pairs.size() < 200000) pairs.insert(pairs.end(), input.indexed.vertex_face.begin(), input.indexed.vertex_face.end());
     Contact found{};
     require(earliest_contact(input.mesh, std::span<const VertexFace>{pairs}, {}, found));
     EXPECT_EQ(found.pair, earliest_of(input.expected).pair);
