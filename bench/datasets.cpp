@@ -11,6 +11,7 @@
 #include <scene/broad_phase.hpp>
 #include <scene/make_scene.hpp>
 #include <scene/mesh_io.hpp>
+#include <scene/pair_vertices.hpp>
 #include <test_data.hpp>
 
 namespace fastccd::bench {
@@ -116,18 +117,11 @@ void add_pairs(Dataset& set, SceneStep scene)
     if (set.kind == PairKind::vertex_face) {
         set.vertex_face = tools::vertex_face_candidates(step);
         cap(set.vertex_face);
-        set.packed = pack(scene, set.vertex_face.size(), [&](std::size_t i) -> std::array<std::int32_t, 4> {
-            const std::int32_t* face = &scene.faces[3 * static_cast<std::size_t>(set.vertex_face[i].face)];
-            return {set.vertex_face[i].vertex, face[0], face[1], face[2]};
-        });
+        set.packed = pack(scene, set.vertex_face.size(), [&](std::size_t i) { return tools::pair_vertices(step, set.vertex_face[i]); });
     } else {
         set.edge_edge = tools::edge_edge_candidates(step);
         cap(set.edge_edge);
-        set.packed = pack(scene, set.edge_edge.size(), [&](std::size_t i) -> std::array<std::int32_t, 4> {
-            const auto& a = scene.edges[static_cast<std::size_t>(set.edge_edge[i].edge_a)];
-            const auto& b = scene.edges[static_cast<std::size_t>(set.edge_edge[i].edge_b)];
-            return {a[0], a[1], b[0], b[1]};
-        });
+        set.packed = pack(scene, set.edge_edge.size(), [&](std::size_t i) { return tools::pair_vertices(step, set.edge_edge[i]); });
     }
     set.scene = std::move(scene);
 }
