@@ -387,10 +387,10 @@ mutant 'lists grow by what is needed alone' scheduler/fastccd.cpp 's/std::max\(n
 
 # ---- The cap on intervals
 leaves=scalar/leaf_search.hpp
-mutant 'cap: none' $leaves 's/unsigned limit = most_;/unsigned limit = 1u << 30;/' cap_test
+mutant 'cap: much more' $leaves 's/unsigned limit = most_;/unsigned limit = most_ + 100000;/' cap_test
 mutant 'cap: nothing where it ends' $leaves 's/is_wide \? std::max\(found->a, skipped_to_\)/is_wide ? none/' cap_test
 mutant 'cap: no more for what is wide' scalar/certified_search.hpp 's/most_extensions = 16/most_extensions = 0/' cap_test
-mutant 'cap: more for what is wide, without end' $leaves 's/is_wide && extensions_ < most_extensions/is_wide/' cap_test
+mutant 'cap: more for what is wide, almost without end' $leaves 's/is_wide && extensions_ < most_extensions/is_wide \&\& extensions_ < 1000/' cap_test
 mutant 'cap: not for the parts of a leaf' $leaves 's/std::min\(search_\.intervals \+ most_parts, most_\);/search_.intervals + most_parts;/' cap_test
 
 following=scalar/following_direction.hpp
