@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Does a test fail when a proof is weakened? For each mutant below, in a copy of the tree: sets a rounding error bound to
 # zero, or loosens a comparison, builds, and runs the tests named until one fails. Prints mutant -> killed by. Exit 1 if
-# a mutant survives. Takes a minute or two for each of some 270 on one core, hours for all.
+# a mutant survives. Takes a minute or two for each of some 300 on one core, hours for all.
 #
 #   tests/mutation.sh [PATTERN]      only mutants whose name matches the extended regular expression
 #   tests/mutation.sh --check        no builds: only that each of them still changes something
