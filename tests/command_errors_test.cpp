@@ -443,6 +443,16 @@ TEST(CommandErrors, OutputsOfOneNameAndOfNoneAreRefused)
     EXPECT_TRUE(directory.names().empty());
     EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "16", "--quiet", "--hits", "/dev/null", "--save", "/dev/null"}).status, 0);
 
+    // Nor may the report be lost, with the file that standard output was.
+    for (const char* kind : {"--json", "--parity"}) {
+        const Outcome both = run({"random", "--kind", "vf", "--pairs", "16", kind, "--hits", file}, {}, {.path = file});
+        EXPECT_EQ(both.status, 2);
+        EXPECT_NE(both.error.find("--hits: the report goes to " + file), std::string::npos) << both.error;
+    }
+    EXPECT_EQ(run({"random", "--kind", "vf", "--pairs", "16", "--quiet", "--hits", file}, {}, {.path = file}).status, 0) << "there is no report";
+    EXPECT_EQ(read_text(file).rfind("pair,toi\n", 0), 0U);
+    std::filesystem::remove(file);
+
     // Links to a file that is to be created.
     std::filesystem::create_symlink("file", directory / "link");
     std::filesystem::create_symlink(directory / "link", directory / "other_link");

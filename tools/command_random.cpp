@@ -34,6 +34,7 @@ void random_command(const RandomOptions& options)
         .pairs = options.pairs,
         .seed = options.seed};
     if (!options.save.empty()) refuse_overwriting_output(options.common, options.save);
+    refuse_overwriting_report(options.common);
     std::optional<NpyWriter> saved;
     const Totals totals = run_narrow_phase(options.common, question, [&](NarrowPhaseRun& run) {
         if (!options.save.empty()) {

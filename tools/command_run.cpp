@@ -26,6 +26,7 @@ struct RunOptions {
 void run_command(const RunOptions& options)
 {
     refuse_overwriting_input(options.common, options.files);
+    refuse_overwriting_report(options.common);
     const PairFiles files{options.files, options.round ? Rounding::nearest : Rounding::exact_only};
     PairRange range{.begin = 0, .end = files.size()};
     if (!options.range.empty()) range = parse_range(options.range, files.size());

@@ -61,6 +61,7 @@ void add_scene_command(CLI::App& app)
             throw CLI::ValidationError("FRAME", "a step is from one frame to another; name two or more");
         }
         refuse_overwriting_input(options->common, options->frames);
+        refuse_overwriting_report(options->common);
         if (!options->save_pairs.empty()) refuse_overwriting_by_pairs(*options);
         print_scene_report(*options, run_scene(*options));
     });

@@ -11,6 +11,8 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <fastccd/isa.hpp>
 
@@ -173,6 +175,15 @@ void refuse_overwriting_input(const CommonOptions& options, const std::vector<st
             throw CLI::ValidationError("--hits", fmt::format("{} is an input", options.hits));
         }
     }
+}
+
+void refuse_overwriting_report(const CommonOptions& options)
+{
+    if (options.quiet && !options.json) return;
+    struct stat standard_output {}, hits {};
+    if (::fstat(STDOUT_FILENO, &standard_output) != 0 || !S_ISREG(standard_output.st_mode) || ::stat(options.hits.c_str(), &hits) != 0) return;
+    if (OutputFile::is_standard_output(options.hits) || standard_output.st_dev != hits.st_dev || standard_output.st_ino != hits.st_ino) return;
+    throw CLI::ValidationError("--hits", fmt::format("the report goes to {}, as that is standard output; --hits - writes the rows there", options.hits));
 }
 
 void refuse_overwriting_output(const CommonOptions& options, const std::filesystem::path& output)

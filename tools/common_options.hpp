@@ -56,6 +56,9 @@ void refuse_overwriting_input(const CommonOptions& options, const std::vector<st
 /// Throws CLI::ValidationError if the hits and `output`, another file that is written, are the same ordinary file.
 void refuse_overwriting_output(const CommonOptions& options, const std::filesystem::path& output);
 
+/// Throws CLI::ValidationError if standard output, to which the report goes, is the file that the hits take the place of: `--hits out > out`.
+void refuse_overwriting_report(const CommonOptions& options);
+
 /// Refuses the empty string, as of a variable of the shell that is not set.
 [[nodiscard]] CLI::Validator not_empty();
 
