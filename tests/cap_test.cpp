@@ -1,16 +1,14 @@
-// The cap on intervals of the certified search. Of all pairs known none comes to the ordinary one, so lower ones are set here: what is not
+// The cap on intervals of the certified search. No pair that bounded_test looks at comes to the ordinary one, so lower ones are set here: what is not
 // looked at by then must not be missed, late or called proven, and the search must end.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 
 #include <certified_search.hpp>
+#include <interval_stack.hpp>
 #include <kernel_table.hpp>
-#include <leaf_search.hpp>
-#include <pair_polynomials.hpp>
 
 #include "amount.hpp"
 #include "generators.hpp"
@@ -90,7 +88,7 @@ TEST(Cap, WhateverItIsNothingIsMissedOrLateOrFalselyProven)
         for (const double tolerance : {1e-6, 1e-9, 1e-14})
             for (const unsigned most : {1u, 2u, 8u, 20u, 64u, 256u}) {
                 const Seen seen = expect_sound(kind, tolerance, most);
-                if (most <= 8) {
+                if (most <= 8) {  // the way down to a leaf takes more than that
                     EXPECT_GT(seen.at_cap, seen.contacts / 2) << "hardly any comes to the cap: nothing was tested";
                 }
             }
