@@ -59,5 +59,18 @@ configure_and_build() {
   rm -f "$build.configure.log"
   say "building"
   [ -f "$build/build.ninja" ] || parallel=(--parallel "$(nproc)")
-  cmake --build "$build" "${parallel[@]}" ${1:+--target "$@"}
+  local log=$build.build.log command=(cmake --build "$build" "${parallel[@]}" ${1:+--target "$@"})
+  if [ -t 1 ]; then
+    "${command[@]}"
+  elif ! "${command[@]}" 2>&1 | tee "$log"; then
+    # g++ 12 has been seen to end by a segmentation fault, on a file that it then compiled 400 times.
+    local crashed=false
+    if grep -q 'internal compiler error: Segmentation fault' "$log"; then crashed=true; fi
+    rm "$log"
+    $crashed || return 1
+    say "the compiler crashed: building once more"
+    "${command[@]}"
+  else
+    rm "$log"
+  fi
 }
