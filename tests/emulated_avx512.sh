@@ -4,7 +4,7 @@
 #
 # qemu 7.2 and valgrind 3.19 emulate no AVX-512. Bochs does, but only whole machines: so a kernel of Debian's is started in it, whose first file
 # system holds the programs and the libraries that they need. Some 40 s until it runs, and floating-point arithmetic about
-# 400 times as slow as here.
+# 400 times as slow as here. It may take FASTCCD_EMULATION_SECONDS, 900 unless told otherwise.
 source "$(dirname "$0")/../tools/setup.sh"
 work=$1 programs=$2
 shift 2
