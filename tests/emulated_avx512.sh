@@ -68,10 +68,12 @@ exec {keys}<>"$work/keys"
 
 machine=
 show_serial() { [ ! -f "$serial" ] || tr -d '\r' <"$serial"; }
-trap '[ -z "$machine" ] || kill "$machine"; show_serial; exit 143' TERM  # what was printed is not lost with it
+# What was printed is not lost; and what is started beside a script is deaf to Ctrl-C, so it is told to end.
+trap '[ -z "$machine" ] || kill "$machine" 2>/dev/null || true; show_serial; exit 143' HUP INT TERM
 
 # run_machine TIME: nothing outside decides what happens in it. Its clock begins at TIME, in seconds from 1970, and counts instructions, the
-# screen's does too, and no key is pressed. A panic of Bochs ends it, as nobody is there to be asked. Status 124 if it takes more than $seconds.
+# screen's does too, and no key is pressed. A panic of Bochs ends it, as nobody is there to be asked. 124 or, where it had to be
+# killed, 137 if it takes more than $seconds.
 run_machine() {
   local status=0
   cat >"$work/bochsrc" <<EOF
@@ -99,7 +101,7 @@ EOF
 }
 seconds=${FASTCCD_EMULATION_SECONDS:-900} status=0
 run_machine 1704067200 || status=$?
-if [ "$status" -eq 124 ]; then
+if [ "$status" -eq 124 ] || [ "$status" -eq 137 ]; then
   # Seen once, when the clock still was the host's, and what had been printed was lost.
   echo "the emulated machine did not end within $seconds s; what it had printed is above. Once more, from another time." >&2
   run_machine 1706745600 || true

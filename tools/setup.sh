@@ -60,6 +60,8 @@ configure_and_build() {
   say "building"
   [ -f "$build/build.ninja" ] || parallel=(--parallel "$(nproc)")
   local log=$build.build.log command=(cmake --build "$build" "${parallel[@]}" ${1:+--target "$@"})
+  # A terminal keeps its one line of progress, and somebody who sees why it ended. Elsewhere a crash of the compiler, which says nothing of the
+  # code, is not to fail all tests.
   if [ -t 1 ]; then
     "${command[@]}"
   elif ! "${command[@]}" 2>&1 | tee "$log"; then
